@@ -1,0 +1,65 @@
+# What experiments/run and tests/run share: the packages they need, and building. They source it, with `top` set to the
+# folder of the repository.
+# shellcheck shell=bash disable=SC2034,SC2154
+
+# The one list of packages, by their names in Debian 12.
+packages_to_build=(g++ cmake ninja-build ccache git libboost-dev libcli11-dev libeigen3-dev libfmt-dev libnifti-dev
+  librandom123-dev libtbb-dev libteem-dev nlohmann-json3-dev zlib1g-dev)
+packages_to_experiment=(python3-matplotlib mricron-data)
+packages_to_test=(libbenchmark-dev libgtest-dev python3-jsonschema)
+packages_to_tidy=(clang-tidy-16)
+
+say() { printf '%s\n' "$*" >&2; }
+
+# fail STATUS MESSAGE
+fail() {
+  say "$2"
+  exit "$1"
+}
+
+# install_packages PACKAGE...: those that are missing, and only those; asks nothing
+install_packages() {
+  if ! { command -v apt-get && command -v dpkg-query; } >/dev/null; then
+    say "This is not Debian, so nothing is installed. Expected, by their names in Debian 12: $*"
+    local tool
+    for tool in cmake ninja g++; do
+      command -v "$tool" >/dev/null || fail 3 "$tool is missing"
+    done
+    return
+  fi
+
+  local installed package missing=()
+  # A line per package that dpkg knows; its exit status only says that it does not know them all.
+  installed=$(dpkg-query --show --showformat '${db:Status-Status} ${Package}\n' "$@" 2>/dev/null) || true
+  for package in "$@"; do
+    grep --quiet --line-regexp --fixed-strings "installed $package" <<<"$installed" || missing+=("$package")
+  done
+  ((${#missing[@]} > 0)) || return 0
+
+  local get=(env DEBIAN_FRONTEND=noninteractive apt-get -y -o DPkg::Lock::Timeout=300)
+  if ((EUID != 0)); then
+    get=(sudo --non-interactive "${get[@]}")
+    sudo --non-interactive true 2>/dev/null ||
+      fail 3 "packages are missing and sudo would ask; as root: apt-get install ${missing[*]}"
+  fi
+  say "Installing ${missing[*]}"
+  { "${get[@]}" update && "${get[@]}" install --no-install-recommends "${missing[@]}"; } >&2 ||
+    fail 3 "could not install ${missing[*]}"
+}
+
+# build PRESET JOBS [CMAKE ARGUMENT...]: configures and builds everything into build/PRESET
+build() {
+  local preset=$1 jobs=$2
+  shift 2
+  cmake -S "$top" --preset "$preset" "$@" >&2
+  local ninja_options=()
+  if [[ $preset == tidy ]]; then
+    ninja_options=(-- -k 0) # all findings at once
+  fi
+  cmake --build "$top/build/$preset" --parallel "$jobs" "${ninja_options[@]}" >&2
+}
+
+# check_jobs TEXT: the N of -j N
+check_jobs() {
+  [[ $1 =~ ^[1-9][0-9]{0,3}$ ]] || fail 2 "-j: found '$1', allowed is a number from 1 to 9999"
+}

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace raytruth {
+
+/// 50 decimal digits: the arithmetic in which formulas are judged.
+using Real50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
+
+/// IEEE binary32 that never promotes. In C++ `0.5 * x` with a float x is a double product; in GLSL it is a float
+/// product. Every operation on this type rounds to binary32, literals included, as a shader does.
+class Binary32 {
+ public:
+  constexpr Binary32() = default;
+  // Implicit, so that the literals of a formula written for GLSL convert as they do there.
+  constexpr Binary32(double value) : value_(static_cast<float>(value)) {}  // NOLINT(google-explicit-constructor)
+
+  [[nodiscard]] explicit constexpr operator double() const { return static_cast<double>(value_); }
+
+  friend constexpr Binary32 operator+(Binary32 a, Binary32 b) { return round(a.value_ + b.value_); }
+  friend constexpr Binary32 operator-(Binary32 a, Binary32 b) { return round(a.value_ - b.value_); }
+  friend constexpr Binary32 operator*(Binary32 a, Binary32 b) { return round(a.value_ * b.value_); }
+  friend constexpr Binary32 operator/(Binary32 a, Binary32 b) { return round(a.value_ / b.value_); }
+  friend constexpr Binary32 operator-(Binary32 a) { return round(-a.value_); }
+  friend constexpr auto operator<=>(Binary32 a, Binary32 b) = default;
+
+ private:
+  static constexpr Binary32 round(float value) {
+    Binary32 result;
+    result.value_ = value;
+    return result;
+  }
+
+  float value_ = 0;
+};
+
+/// The binary64 number nearest to `value`.
+inline double to_double(double value) { return value; }
+inline double to_double(Binary32 value) { return static_cast<double>(value); }
+inline double to_double(const Real50& value) { return static_cast<double>(value); }
+
+}  // namespace raytruth

@@ -1,0 +1,33 @@
+#include "signals/marschner_lobb.hpp"
+
+#include "core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace raytruth {
+
+double marschner_lobb(double x, double y, double z) {
+  using std::numbers::pi;
+  constexpr double frequency = 6;
+  constexpr double alpha = 0.25;
+  const double ripple = std::cos(2 * pi * frequency * std::cos(pi * std::hypot(x, y) / 2));
+  return (1 - std::sin(pi * z / 2) + alpha * (1 + ripple)) / (2 * (1 + alpha));
+}
+
+Grid sampled_marschner_lobb(std::int64_t samples) {
+  if (samples < 2 || samples > 2048) throw InputError(fmt::format("samples {}; 2 to 2048 is allowed", samples));
+  Grid grid{.size = {samples, samples, samples}, .spacing = {1, 1, 1}, .values = {}};
+  grid.values.reserve(static_cast<std::size_t>(samples * samples * samples));
+  const auto node = [samples](std::int64_t i) {
+    return 2 * static_cast<double>(i) / static_cast<double>(samples - 1) - 1;
+  };
+  for (std::int64_t k = 0; k < samples; ++k)
+    for (std::int64_t j = 0; j < samples; ++j)
+      for (std::int64_t i = 0; i < samples; ++i) grid.values.push_back(marschner_lobb(node(i), node(j), node(k)));
+  return grid;
+}
+
+}  // namespace raytruth

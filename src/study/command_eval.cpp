@@ -1,0 +1,40 @@
+#include "study/case.hpp"
+#include "study/commands.hpp"
+#include "study/output.hpp"
+#include "volume/find_volume.hpp"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <nlohmann/json.hpp>
+
+namespace raytruth {
+
+int evaluate_cases(const EvalOptions& options) {
+  const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+
+  const JsonReader document = JsonReader::from_file(options.file);
+  CaseReader reader(volume_folders(options.data));
+  std::vector<Case> cases;
+  for (const JsonReader& item : document.is_array() ? document.items() : std::vector{document})
+    cases.push_back(reader.read(item));
+  for (const std::string& warning : reader.warnings()) say(warning);
+
+  std::vector<nlohmann::ordered_json> answers(cases.size());
+  std::vector<std::string> errors(cases.size());
+  tbb::parallel_for(std::size_t{0}, cases.size(), [&](std::size_t i) {
+    try {
+      answers[i] = evaluate(cases[i]);
+    } catch (const InputError& error) {
+      errors[i] = error.what();
+    }
+  });
+  // The first one in the file, whichever thread met one first.
+  for (const std::string& error : errors)
+    if (!error.empty()) throw InputError(error);
+  print((document.is_array() ? nlohmann::ordered_json(answers) : answers.front()).dump(2) + "\n");
+  return 0;
+}
+
+}  // namespace raytruth

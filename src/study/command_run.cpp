@@ -1,0 +1,200 @@
+#include "study/commands.hpp"
+#include "study/journal.hpp"
+#include "study/measure.hpp"
+#include "study/one_line.hpp"
+#include "study/output.hpp"
+#include "study/progress_bar.hpp"
+#include "study/result.hpp"
+#include "volume/find_volume.hpp"
+
+#include <fmt/chrono.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace raytruth {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Row complete_row(std::string_view measure, const std::string& field, Row row, const std::string& why = {}) {
+  Row complete{{"measure", std::string(measure)}, {"field", field}};
+  complete.insert(complete.end(), std::make_move_iterator(row.begin()), std::make_move_iterator(row.end()));
+  complete.emplace_back("status", why.empty() ? "ok" : "refused");
+  complete.emplace_back("why", why.empty() ? Value() : Value(why));
+  return complete;
+}
+
+/// A field, made when it is first asked for: an interrupted run may have finished with it.
+class LazyField {
+ public:
+  LazyField(const Experiment& experiment, const FieldSource& source, const std::vector<std::filesystem::path>& folders)
+      : experiment_(experiment), source_(source), folders_(folders) {}
+
+  /// Null where the field's volume is absent.
+  const Field* get(const ProgressBar& bar) {
+    if (field_ || is_absent()) return field_ ? &*field_ : nullptr;
+    try {
+      field_ = make_field(experiment_, source_, folders_);
+      if (!field_->warnings.empty()) bar.clear();
+      for (const std::string& warning : field_->warnings) say(warning);
+      return &*field_;
+    } catch (const VolumeAbsent& error) {
+      why_absent_ = one_line(error.what());
+      bar.clear();
+      say(fmt::format("warning: {}: refused: {}", source_.name, why_absent_));
+      return nullptr;
+    }
+  }
+
+  [[nodiscard]] bool is_absent() const { return !why_absent_.empty(); }
+  [[nodiscard]] const std::string& why_absent() const { return why_absent_; }
+
+ private:
+  const Experiment& experiment_;
+  const FieldSource& source_;
+  const std::vector<std::filesystem::path>& folders_;
+  std::optional<Field> field_;
+  std::string why_absent_;
+};
+
+/// What the rows and facts of all fields come to.
+struct Findings {
+  Json fields = Json::object();
+  std::vector<Row> rows;
+};
+
+/// What one measure finds in one field.
+Json measure_field(const Experiment& experiment, const FieldSource& source, const JsonReader& options,
+                   const Field& field) {
+  const std::string kind = options.at("kind").text();
+  const auto measure =
+      std::find_if(measures.begin(), measures.end(), [&kind](const Measure& m) { return m.name == kind; });
+  Json rows = Json::array();
+  for (Row& row : source.json.blame_for([&] { return measure->rows(experiment, options, field); }))
+    rows.push_back(to_json(complete_row(kind, source.name, std::move(row))));
+  return {{"field", describe(field)}, {"rows", std::move(rows)}};
+}
+
+Findings run_all(const Experiment& experiment, const std::vector<std::filesystem::path>& folders, Journal& journal) {
+  Findings findings;
+  ProgressBar bar(experiment.fields.size() * experiment.measures.size());
+  for (const FieldSource& source : experiment.fields) {
+    LazyField field(experiment, source, folders);
+    for (const JsonReader& options : experiment.measures) {
+      const std::string kind = options.at("kind").text();
+      const std::string name = source.name + "/" + kind;
+      const Json* const finished = journal.find(name);
+      bar.show(name);
+      Json part;
+      if (finished != nullptr) {
+        part = *finished;
+      } else if (const Field* const made = field.get(bar)) {
+        part = measure_field(experiment, source, options, *made);
+        journal.add(name, part);
+      } else {
+        const Row row = complete_row(kind, source.name, {}, field.why_absent());
+        part = {{"field", {{"status", "refused"}, {"why", field.why_absent()}}}, {"rows", {to_json(row)}}};
+      }
+      bar.advance(finished == nullptr);
+      findings.fields[source.name] = part.at("field");
+      for (const Json& row : part.at("rows"))
+        findings.rows.push_back(read_row(JsonReader::from_json(row, experiment.json)));
+    }
+  }
+  return findings;
+}
+
+/// The result that is there already, if it is of this very run.
+std::optional<Json> finished_result(const std::filesystem::path& file, const Json& run) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return {};
+  try {
+    Json result = read_result(file.string()).json();
+    const Json& origin = result.at("provenance");
+    for (const auto& [key, value] : run.at("build").items())
+      if (!origin.contains(key) || origin.at(key) != value) return {};
+    if (result.at("experiment") != run.at("experiment")) return {};
+    return result;
+  } catch (const InputError&) {
+    return {};  // no result at all: to be replaced
+  }
+}
+
+Json run_experiment(const Experiment& experiment, const RunOptions& options, const std::filesystem::path& file) {
+  const Json run{{"raytruth", "journal/1"}, {"build", build_identity()}, {"experiment", experiment.json.json()}};
+  if (options.resume)
+    if (auto finished = finished_result(file, run)) return *finished;
+
+  const auto start = std::chrono::system_clock::now();
+  const auto clock_start = std::chrono::steady_clock::now();
+  Journal journal = file.empty() ? Journal() : Journal(file, run, options.resume);
+  const bool is_resumed = !journal.is_empty();
+  const Findings findings = run_all(experiment, volume_folders(options.data), journal);
+
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock_start).count();
+  const auto threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  const Provenance provenance{
+      .profile = options.profile,
+      .threads = static_cast<int>(threads),
+      .seconds = std::round(seconds * 1000) / 1000,
+      .started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(start))),
+      .resumed = is_resumed};
+  Json result = make_result(experiment, provenance, findings.fields, findings.rows);
+  if (!file.empty()) write_whole(file, result_text(result));
+  journal.remove();
+  return result;
+}
+
+/// Where the result goes; empty: to standard output.
+std::filesystem::path result_file(const RunOptions& options, const Experiment& experiment) {
+  if (!options.folder) return {};
+  return std::filesystem::path(*options.folder) / (experiment.name + ".json");
+}
+
+void refuse_overwriting(const std::string& experiment, const std::filesystem::path& result) {
+  std::error_code ignored;
+  if (std::filesystem::equivalent(experiment, result, ignored))
+    throw InputError(
+        fmt::format("{}: found the experiment where its result would go; another folder is allowed", result.string()));
+}
+
+}  // namespace
+
+int run_experiments(const RunOptions& options) {
+  if (!options.folder && options.experiments.size() > 1)
+    throw InputError(fmt::format("run: found {} experiments without -o; one is allowed", options.experiments.size()));
+  if (!options.folder && options.resume) throw InputError("run: found --resume without -o; -o DIR is needed with it");
+  std::vector<Experiment> experiments;
+  for (const std::string& path : options.experiments) {
+    Experiment experiment = read_experiment(path, options.profile, options.seed);
+    for (const Experiment& other : experiments)
+      if (other.name == experiment.name) experiment.json.at("name").refuse_value("one experiment of each name");
+    experiments.push_back(std::move(experiment));
+  }
+  for (const Experiment& experiment : experiments)
+    for (const std::string& path : options.experiments) refuse_overwriting(path, result_file(options, experiment));
+  if (options.folder) make_folder(*options.folder);
+
+  const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  bool all_hold = true;
+  for (const Experiment& experiment : experiments) {
+    const auto file = result_file(options, experiment);
+    const Json result = run_experiment(experiment, options, file);
+    if (file.empty()) print(result_text(result));
+    fmt::print(stderr, "{}", claims_table(result));
+    for (const std::string& line : broken_checks(result)) {
+      all_hold = false;
+      say(line);
+    }
+  }
+  return options.check && !all_hold ? 1 : 0;
+}
+
+}  // namespace raytruth

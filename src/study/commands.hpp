@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// The program's commands. Each returns the exit code and throws InputError (2) or MissingError (3).
+namespace raytruth {
+
+struct RunOptions {
+  std::vector<std::string> experiments;
+  std::optional<std::string> folder;
+  int threads = 0;  ///< 0: all cores
+  std::string profile = "full";
+  std::optional<std::int64_t> seed;
+  bool check = false;
+  bool resume = false;
+  std::string data;
+};
+int run_experiments(const RunOptions& options);
+
+struct EvalOptions {
+  std::string file;
+  int threads = 0;
+  std::string data;
+};
+int evaluate_cases(const EvalOptions& options);
+
+struct ListOptions {
+  std::string kind;  ///< empty: all
+  bool json = false;
+};
+/// What `list` can be asked for.
+const std::vector<std::string>& listed_kinds();
+int list_ingredients(const ListOptions& options);
+
+struct InfoOptions {
+  std::string volume;
+  bool json = false;
+  std::string data;
+};
+int show_volume(const InfoOptions& options);
+
+struct DiffOptions {
+  std::string before;
+  std::string after;
+  bool json = false;
+  bool check = false;
+};
+int compare_results(const DiffOptions& options);
+
+struct PlotOptions {
+  std::vector<std::string> results;
+  std::string folder = ".";
+  std::string format = "svg";
+};
+int plot_results(const PlotOptions& options);
+
+}  // namespace raytruth

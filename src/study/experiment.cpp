@@ -1,0 +1,282 @@
+#include "study/experiment.hpp"
+
+#include "catalogue.hpp"
+#include "signals/marschner_lobb.hpp"
+#include "signals/random_field.hpp"
+#include "study/measure.hpp"
+#include "study/volume_source.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace raytruth {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::int64_t largest_seed = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t most_rays = 100'000'000;
+constexpr std::int64_t largest_generated_size = 2048;
+
+template <class Entries>
+std::vector<std::string_view> names_of(const Entries& entries) {
+  std::vector<std::string_view> names(entries.size());
+  std::transform(entries.begin(), entries.end(), names.begin(), [](const auto& entry) { return entry.name; });
+  return names;
+}
+
+std::vector<std::string_view> scheme_names() {
+  std::vector<std::string_view> names;
+  catalogue::for_each_scheme([&names]<class S>() { names.push_back(S::info.name); });
+  return names;
+}
+
+/// The text at items[i][key], or items[i] itself for an empty key, of the list at document[list].
+std::vector<Json> words_in(const Json& document, const char* list, const char* key) {
+  std::vector<Json> words;
+  if (!document.contains(list) || !document[list].is_array()) return words;
+  for (const Json& item : document[list])
+    if (item.is_string())
+      words.push_back(item);
+    else if (item.is_object() && item.contains(key))
+      words.push_back(item[key]);
+  return words;
+}
+
+/// Takes what `lost` holds out of a selector's value; true where nothing is left of it.
+bool is_lost(Json& value, const std::vector<Json>& lost) {
+  const auto is_in_lost = [&lost](const Json& word) { return std::find(lost.begin(), lost.end(), word) != lost.end(); };
+  if (!value.is_array()) return is_in_lost(value);
+  const bool was_empty = value.empty();
+  value.erase(std::remove_if(value.begin(), value.end(), is_in_lost), value.end());
+  return value.empty() && !was_empty;
+}
+
+/// Merges the quick version into the document, and drops what is said about rows that it does not make.
+void merge_quick(Json& document) {
+  const Json full = document;
+  document.merge_patch(full["quick"]);
+  for (const auto& [column, list, key] :
+       {std::tuple{"field", "fields", "name"}, {"scheme", "schemes", ""}, {"measure", "measures", "kind"}}) {
+    std::vector<Json> lost = words_in(full, list, key);
+    const std::vector<Json> kept = words_in(document, list, key);
+    std::erase_if(lost, [&kept](const Json& word) { return std::find(kept.begin(), kept.end(), word) != kept.end(); });
+    for (const char* const statements : {"published", "checks"}) {
+      if (!document.contains(statements) || !document[statements].is_array()) continue;
+      Json& entries = document[statements];
+      const auto is_about_lost = [&, column = column](Json& entry) {
+        for (const char* const rows : {"row", "rows"})
+          if (entry.is_object() && entry.contains(rows) && entry[rows].is_object() && entry[rows].contains(column))
+            return is_lost(entry[rows][column], lost);
+        return false;
+      };
+      entries.erase(std::remove_if(entries.begin(), entries.end(), is_about_lost), entries.end());
+    }
+  }
+}
+
+void fill_in_defaults(Json& document) {
+  document.emplace("seed", 1);
+  document.emplace("samplings", Json::array({{{"kind", "cells"}}}));
+  document.emplace("published", Json::array());
+  document.emplace("checks", Json::array());
+  if (!document.contains("fields") || !document["fields"].is_array()) return;
+  for (Json& field : document["fields"]) {
+    if (!field.is_object() || !field.contains("kind")) continue;
+    if (field["kind"] == "random_field") field.emplace("size", 64);
+    if (field["kind"] == "random_field") field.emplace("smoothing", 0);
+    if (field["kind"] == "marschner_lobb") field.emplace("samples", 41);
+  }
+}
+
+/// Refuses a second item of the same name.
+void add_unique(std::vector<std::string>& names, const JsonReader& place, std::string name) {
+  if (std::find(names.begin(), names.end(), name) != names.end()) place.refuse_value("each name once");
+  names.push_back(std::move(name));
+}
+
+/// A word that can be a file's name and a cell of a table.
+std::string read_name(const JsonReader& json) {
+  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-";
+  std::string name = json.text();
+  if (name.find_first_not_of(letters) != std::string::npos || name.front() == '.')
+    json.refuse_value("a name of letters, digits, '_', '-' and '.', not beginning with '.',");
+  return name;
+}
+
+void check_field(const JsonReader& json) {
+  const std::string kind = json.at("kind").word(names_of(catalogue::fields));
+  if (kind == "random_field") {
+    json.only({"name", "kind", "size", "smoothing"});
+    const auto size = json.at("size").integer(1, largest_generated_size);
+    json.at("smoothing").number(0, static_cast<double>(size));
+  } else if (kind == "marschner_lobb") {
+    json.only({"name", "kind", "samples"});
+    json.at("samples").integer(2, largest_generated_size);
+  } else {
+    json.only({"name", "kind", "volume", "repair"});
+    json.at("volume").text();
+    asks_for_repair(json);
+  }
+}
+
+void check_plot(const JsonReader& json, const RowNames& names) {
+  json.only({"title", "note", "panels"});
+  json.at("title").text();
+  if (const auto note = json.find("note")) note->text();
+  const std::vector<std::string_view> columns(names.columns.begin(), names.columns.end());
+  for (const JsonReader& panel : json.at("panels").items()) {
+    panel.only({"kind", "rows", "value", "group", "series", "printed", "log", "label"});
+    panel.at("kind").word({"quantiles"});
+    read_selector(panel.at("rows"), names);
+    panel.at("value").text();
+    panel.at("group").word(columns);
+    panel.at("series").word(columns);
+    if (const auto printed = panel.find("printed")) printed->word(columns);
+    if (const auto log = panel.find("log")) log->boolean();
+    panel.at("label").text();
+  }
+}
+
+std::vector<Claim> read_claims(const JsonReader& json, const RowNames& names) {
+  std::vector<Claim> claims;
+  std::vector<std::string> seen;
+  for (const JsonReader& item : json.items(0)) {
+    claims.push_back(read_claim(item, names));
+    add_unique(seen, item.at("claim"), claims.back().name);
+  }
+  return claims;
+}
+
+std::vector<Check> read_checks(const JsonReader& json, const RowNames& names) {
+  std::vector<Check> checks;
+  for (const JsonReader& item : json.items(0)) checks.push_back(read_check(item, names));
+  return checks;
+}
+
+/// The document as it is run.
+JsonReader read_document(const std::string& path, std::string_view profile, std::optional<std::int64_t> seed) {
+  const JsonReader file = JsonReader::from_file(path);
+  file.at("raytruth").word({"experiment/1"});
+  Json document = file.json();
+  if (const auto quick = file.find("quick")) {
+    quick->members();
+    if (profile == "quick") merge_quick(document);
+    document.erase("quick");
+  }
+  fill_in_defaults(document);
+  if (seed) document["seed"] = *seed;
+  return JsonReader::from_json(std::move(document), file);
+}
+
+const Measure& measure_of(const JsonReader& json) {
+  const std::string kind = json.at("kind").word(names_of(measures));
+  return *std::find_if(measures.begin(), measures.end(),
+                       [&kind](const Measure& measure) { return measure.name == kind; });
+}
+
+}  // namespace
+
+Sampling read_sampling(const JsonReader& json) {
+  Sampling sampling{json.at("kind").word(names_of(catalogue::samplings)), {}};
+  if (sampling.kind == "constant") {
+    json.only({"kind", "step"});
+    sampling.step = json.at("step").positive_number();
+  } else {
+    json.only({"kind"});
+  }
+  return sampling;
+}
+
+Experiment read_experiment(const std::string& path, std::string_view profile, std::optional<std::int64_t> seed) {
+  const JsonReader json = read_document(path, profile, seed);
+  json.only({"raytruth", "name", "question", "source", "seed", "fields", "rays", "samplings", "schemes", "measures",
+             "published", "checks", "plot"});
+  Experiment experiment{.name = read_name(json.at("name")),
+                        .seed = static_cast<std::uint64_t>(json.at("seed").integer(0, largest_seed)),
+                        .fields = {},
+                        .rays = {},
+                        .samplings = {},
+                        .schemes = {},
+                        .measures = {},
+                        .claims = {},
+                        .checks = {},
+                        .json = json};
+  json.at("question").text();
+  json.at("source").text();
+
+  RowNames names;
+  for (const JsonReader& field : json.at("fields").items()) {
+    check_field(field);
+    experiment.fields.push_back({read_name(field.at("name")), field});
+    add_unique(names.fields, field.at("name"), experiment.fields.back().name);
+  }
+  json.at("rays").only({"count", "length"});
+  experiment.rays = {json.at("rays").at("count").integer(1, most_rays), json.at("rays").at("length").positive_number()};
+  std::vector<std::string> samplings;
+  for (const JsonReader& item : json.at("samplings").items()) {
+    experiment.samplings.push_back(read_sampling(item));
+    add_unique(samplings, item,
+               fmt::format("{} {}", experiment.samplings.back().kind, experiment.samplings.back().step.value_or(0)));
+  }
+  for (const JsonReader& scheme : json.at("schemes").items())
+    add_unique(names.schemes, scheme, scheme.word(scheme_names()));
+  experiment.schemes = names.schemes;
+  for (const JsonReader& measure : json.at("measures").items()) {
+    const Measure& found = measure_of(measure);
+    add_unique(names.measures, measure.at("kind"), std::string(found.name));
+    found.columns(experiment, measure);  // refuses bad options before anything runs
+    experiment.measures.push_back(measure);
+  }
+
+  for (const Column& column : result_columns(experiment)) names.columns.push_back(column.name);
+  experiment.claims = read_claims(json.at("published"), names);
+  experiment.checks = read_checks(json.at("checks"), names);
+  if (const auto plot = json.find("plot")) check_plot(*plot, names);
+  return experiment;
+}
+
+Field make_field(const Experiment& experiment, const FieldSource& source,
+                 const std::vector<std::filesystem::path>& folders) {
+  const JsonReader& json = source.json;
+  const std::string kind = json.at("kind").text();
+  if (kind == "random_field") {
+    const auto size = json.at("size").integer(1, largest_generated_size);
+    return {source.name, random_field(size, json.at("smoothing").number(), experiment.seed), {0, 1}};
+  }
+  if (kind == "marschner_lobb")
+    return {source.name, sampled_marschner_lobb(json.at("samples").integer(2, largest_generated_size)), {0, 1}};
+
+  SourcedVolume volume = read_sourced_volume(json, folders);
+  const auto [low, high] = volume.grid.range();
+  if (!std::isfinite(high - low))
+    json.at("volume").refuse(fmt::format("values from {} to {}", low, high), "a range that binary64 holds");
+  if (low < high)
+    for (double& value : volume.grid.values) value = (value - low) / (high - low);
+  else
+    std::fill(volume.grid.values.begin(), volume.grid.values.end(), 0.0);
+  return {source.name, std::move(volume.grid), {low, high}, volume.file, volume.repaired, std::move(volume.warnings)};
+}
+
+std::vector<Column> result_columns(const Experiment& experiment) {
+  std::vector<Column> columns{
+      {.name = "measure", .unit = "", .description = "what the row reports", .is_key = true},
+      {.name = "field", .unit = "", .description = "the field that the rays cross", .is_key = true},
+  };
+  const auto add = [&columns](const Column& added) {
+    if (std::none_of(columns.begin(), columns.end(), [&](const Column& column) { return column.name == added.name; }))
+      columns.push_back(added);
+  };
+  for (const JsonReader& measure : experiment.measures)
+    for (const Column& column : measure_of(measure).columns(experiment, measure)) add(column);
+  add({.name = "status", .unit = "", .description = "ok, or refused"});
+  add({.name = "why", .unit = "", .description = "why it is refused"});
+  return columns;
+}
+
+}  // namespace raytruth

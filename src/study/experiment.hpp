@@ -1,0 +1,75 @@
+#pragma once
+
+#include "study/json_reader.hpp"
+#include "study/verdict.hpp"
+#include "volume/grid.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace raytruth {
+
+/// A sampling along rays.
+struct Sampling {
+  std::string kind;            ///< as in the catalogue
+  std::optional<double> step;  ///< voxels; for `constant`
+};
+
+/// Reads {"kind": "cells"} or {"kind": "constant", "step": 0.25}. Throws InputError.
+Sampling read_sampling(const JsonReader& json);
+
+/// Where a field of an experiment comes from, as its JSON says it.
+struct FieldSource {
+  std::string name;
+  JsonReader json;
+};
+
+/// A field of an experiment, ready: values scaled to [0, 1] by `data_range`, for volumes the smallest and largest
+/// value; generated fields lie in [0, 1] as they are.
+struct Field {
+  std::string name;
+  Grid grid;
+  std::pair<double, double> data_range;
+  std::string file = {};  ///< without its folder; empty for generated fields
+  bool repaired = false;
+  std::vector<std::string> warnings = {};  ///< one line each
+};
+
+/// The rays of a study: `count` of them per field, directions isotropic, all of `length` voxels.
+struct RayEnsemble {
+  std::int64_t count = 0;
+  double length = 0;
+};
+
+/// What an experiment file asks; experiments/schemas/experiment.json describes the file.
+struct Experiment {
+  std::string name;
+  std::uint64_t seed = 1;
+  std::vector<FieldSource> fields;
+  RayEnsemble rays;
+  std::vector<Sampling> samplings;
+  std::vector<std::string> schemes;
+  std::vector<JsonReader> measures;
+  std::vector<Claim> claims;
+  std::vector<Check> checks;
+  JsonReader json;  ///< the whole document, profile merged in, defaults filled in
+};
+
+/// Reads and checks an experiment. `profile` is "full" or "quick"; "quick" merges the member of that name into the
+/// document (RFC 7396), and leaves out claims and checks about fields, schemes and measures that are no longer in it.
+/// `seed` replaces the document's. Throws InputError.
+Experiment read_experiment(const std::string& path, std::string_view profile, std::optional<std::int64_t> seed);
+
+/// Makes a field, from its generator or its file found in `folders`. Throws VolumeAbsent where no folder holds it.
+Field make_field(const Experiment& experiment, const FieldSource& source,
+                 const std::vector<std::filesystem::path>& folders);
+
+/// The columns of a result: `measure`, `field`, those of the measures, `status` and `why`.
+std::vector<Column> result_columns(const Experiment& experiment);
+
+}  // namespace raytruth

@@ -1,0 +1,181 @@
+#include "core/error.hpp"
+#include "study/commands.hpp"
+#include "study/one_line.hpp"
+#include "study/output.hpp"
+#include "study/version.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
+
+#include <csignal>
+#include <exception>
+#include <functional>
+#include <new>
+#include <stdexcept>
+
+namespace raytruth {
+
+namespace {
+
+constexpr int bad_input = 2;
+constexpr int missing = 3;
+constexpr int most_threads = 9999;
+
+/// The command line: options end up in the structures of commands.hpp, and `chosen` becomes the command to call.
+class CommandLine {
+ public:
+  CommandLine() {
+    program_.require_subcommand(1);
+    program_.set_version_flag("--version", fmt::format("raytruth {} ({})", version, commit));
+    program_.footer("Exit codes: 0 done; 1 a bound does not hold (--check); 2 bad input; 3 something is missing here.");
+    add_run();
+    add_list();
+    add_eval();
+    add_plot();
+    add_diff();
+    add_info();
+  }
+
+  /// Returns the exit code.
+  int run(int argc, char** argv) {
+    try {
+      program_.parse(argc, argv);
+    } catch (const CLI::Success& request) {  // --help, --version
+      std::ostringstream text;
+      program_.exit(request, text, text);
+      print(text.str() + (text.str().ends_with('\n') ? "" : "\n"));
+      return 0;
+    } catch (const CLI::ParseError& error) {
+      if (program_.get_subcommands().empty() && argc > 1) refuse_command(argv[1]);
+      throw InputError(fmt::format("command line: {}; `raytruth --help` tells what is allowed", error.what()));
+    }
+    return chosen_();
+  }
+
+ private:
+  template <class Options>
+  CLI::App* add_command(const char* name, const char* summary, const char* example, Options& options,
+                        int (*command)(const Options&)) {
+    CLI::App* const added = program_.add_subcommand(name, summary);
+    added->footer(fmt::format("Example:\n  {}", example));
+    added->callback([this, &options, command] { chosen_ = [&options, command] { return command(options); }; });
+    return added;
+  }
+
+  [[noreturn]] void refuse_command(std::string_view found) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : program_.get_subcommands({})) names.push_back(command->get_name());
+    const auto closest = closest_word(found, names);
+    throw InputError(fmt::format("command line: found {}{}; one of {} is allowed", found,
+                                 closest.empty() ? "" : fmt::format(" (perhaps {})", closest), fmt::join(names, ", ")));
+  }
+
+  static void add_data(CLI::App& command, std::string& data) {
+    command.add_option("--data", data, "Folders of volumes, separated by ':'; before those of RAYTRUTH_DATA")
+        ->type_name("DIR");
+  }
+
+  static void add_threads(CLI::App& command, int& threads) {
+    command.add_option("-j", threads, "Threads to use (default: all cores)")
+        ->type_name("N")
+        ->check(CLI::Range(1, most_threads));
+  }
+
+  void add_run() {
+    auto& command =
+        *add_command("run", "Run experiments", "raytruth run experiments/xi_adaptive.json -o out --profile quick", run_,
+                     run_experiments);
+    command.add_option("experiment", run_.experiments, "JSON files; '-' is standard input")->required();
+    command.add_option("-o", run_.folder, "Write NAME.json into this folder (default: to standard output)")
+        ->type_name("DIR");
+    add_threads(command, run_.threads);
+    command.add_option("--profile", run_.profile, "quick: a smaller version, in seconds (default: full)")
+        ->type_name("NAME")
+        ->check(CLI::IsMember({"quick", "full"}));
+    command.add_option("--seed", run_.seed, "Instead of the experiment's")
+        ->type_name("S")
+        ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
+    command.add_flag("--check", run_.check, "Exit with 1 if a bound that the experiment states does not hold");
+    command.add_flag("--resume", run_.resume, "Finish an interrupted run; needs -o");
+    add_data(command, run_.data);
+  }
+
+  void add_list() {
+    auto& command = *add_command("list", "List what there is", "raytruth list schemes --json", list_, list_ingredients);
+    command.add_option("kind", list_.kind, "Of what (default: everything)")->check(CLI::IsMember(listed_kinds()));
+    command.add_flag("--json", list_.json, "As JSON");
+  }
+
+  void add_eval() {
+    auto& command = *add_command("eval", "Evaluate one ray, or an array of rays, by the schemes they name",
+                                 "raytruth eval ray.json", eval_, evaluate_cases);
+    command.add_option("case", eval_.file, "JSON file; '-' is standard input")->required();
+    add_threads(command, eval_.threads);
+    add_data(command, eval_.data);
+  }
+
+  void add_plot() {
+    auto& command = *add_command("plot", "Draw the plots of results", "raytruth plot results/xi_adaptive.json -o plots",
+                                 plot_, plot_results);
+    command.add_option("result", plot_.results, "JSON files")->required();
+    command.add_option("-o", plot_.folder, "Write NAME.FORMAT into this folder (default: the current one)")
+        ->type_name("DIR");
+    command.add_option("--format", plot_.format, "svg (default), png or pdf")
+        ->type_name("NAME")
+        ->check(CLI::IsMember({"svg", "png", "pdf"}));
+  }
+
+  void add_diff() {
+    auto& command = *add_command("diff", "Tell what changed between two results, beyond both radii",
+                                 "raytruth diff results/xi_adaptive.json out/xi_adaptive.json", diff_, compare_results);
+    command.add_option("before", diff_.before, "JSON file")->required();
+    command.add_option("after", diff_.after, "JSON file")->required();
+    command.add_flag("--json", diff_.json, "As JSON");
+    command.add_flag("--check", diff_.check, "Exit with 1 if something changed");
+  }
+
+  void add_info() {
+    auto& command = *add_command("info", "Describe a volume: header, range, levels in use, signs of damage",
+                                 "raytruth info ch2.nii.gz", info_, show_volume);
+    command.add_option("volume", info_.volume, "File, or name in the data folders")->required();
+    command.add_flag("--json", info_.json, "As JSON");
+    add_data(command, info_.data);
+  }
+
+  CLI::App program_{"Exact rays through volumes, and how far the schemes of volume rendering are from them.",
+                    "raytruth"};
+  RunOptions run_;
+  ListOptions list_;
+  EvalOptions eval_;
+  PlotOptions plot_;
+  DiffOptions diff_;
+  InfoOptions info_;
+  std::function<int()> chosen_;
+};
+
+int run_program(int argc, char** argv) {
+  try {
+    // A reader that stops early, as `head` does, shows as an error of writing.
+    std::signal(SIGPIPE, SIG_IGN);
+    return CommandLine().run(argc, argv);
+  } catch (const InputError& error) {
+    say(error.what());
+    return bad_input;
+  } catch (const MissingError& error) {
+    say(error.what());
+    return missing;
+  } catch (const std::bad_alloc&) {
+    say("this needs more memory than the machine has");
+    return missing;
+  } catch (const std::exception& error) {
+    say(fmt::format("this should not have happened: {}", error.what()));
+    return bad_input;
+  }
+}
+
+}  // namespace
+
+}  // namespace raytruth
+
+int main(int argc, char** argv) { return raytruth::run_program(argc, argv); }

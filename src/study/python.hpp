@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace raytruth {
+
+/// What a Python script left behind.
+struct PythonOutcome {
+  int status = 0;          ///< exit code, or 128 + the signal that ended it
+  std::string last_error;  ///< the last line that it wrote to standard error
+};
+
+/// Runs a script, which Python reads from standard input, with arguments. The interpreter is that of the environment
+/// variable RAYTRUTH_PYTHON, else /usr/bin/python3, to which Debian's matplotlib belongs.
+/// Throws MissingError where there is no interpreter.
+PythonOutcome run_python(const std::string& script, const std::vector<std::string>& arguments);
+
+}  // namespace raytruth

@@ -1,0 +1,46 @@
+#include "study/volume_source.hpp"
+
+#include "study/one_line.hpp"
+#include "volume/find_volume.hpp"
+#include "volume/read_volume.hpp"
+
+#include <fmt/format.h>
+
+#include <system_error>
+#include <utility>
+
+namespace raytruth {
+
+std::filesystem::path find_sourced_volume(const JsonReader& owner, const std::vector<std::filesystem::path>& folders) {
+  const JsonReader place = owner.at("volume");
+  const std::string name = place.text();
+  const auto beside = place.resolve(name);
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(beside, ignored)) return beside;
+  if (name.find('/') != std::string::npos) throw VolumeAbsent(one_line(name) + ": no such file");
+  return find_volume(name, folders);
+}
+
+bool asks_for_repair(const JsonReader& owner) {
+  const auto repair = owner.find("repair");
+  return repair && repair->word({"first_byte"}) == "first_byte";
+}
+
+std::string lost_first_byte_warning(const std::string& file) {
+  return fmt::format(
+      "warning: {}: its last byte is 0x0A, the sign of a stream that lost its first byte; \"repair\": \"first_byte\" "
+      "undoes it",
+      file);
+}
+
+SourcedVolume read_sourced_volume(const JsonReader& owner, const std::vector<std::filesystem::path>& folders) {
+  const bool repaired = asks_for_repair(owner);
+  const auto file = find_sourced_volume(owner, folders);
+  Volume volume = owner.at("volume").blame_for([&file] { return read_volume(file); });
+  if (repaired) owner.at("repair").blame_for([&volume] { repair_first_byte(volume); });
+  SourcedVolume result{std::move(volume.grid), file.filename().string(), repaired, {}};
+  if (volume.lost_first_byte) result.warnings.push_back(owner.place() + ": " + lost_first_byte_warning(result.file));
+  return result;
+}
+
+}  // namespace raytruth

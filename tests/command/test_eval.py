@@ -1,0 +1,217 @@
+"""`raytruth eval`: what it answers, and what it refuses."""
+
+import json
+import math
+import unittest
+
+from support import RAY, VOLUME_RAY, ProgramTest, changed
+
+
+class Answers(ProgramTest):
+    def test_ray_of_polynomials(self):
+        answer = self.json_of("eval", "-", stdin=RAY)
+        self.assertEqual(answer["length"], 2.5)
+        self.assertEqual(answer["reference"]["status"], "refused")
+        self.assertEqual(list(answer["schemes"]), RAY["schemes"][1:])
+        samples = {name: scheme["samples"] for name, scheme in answer["schemes"].items()}
+        self.assertEqual(samples, {"order0_mid": 21, "order1": 11, "order2": 11, "virtual_catmull_rom": 11})
+        # The first piece has the slope 1/2: off the midpoint of an interval by 1/8 the held value is wrong by 1/16.
+        self.assertAlmostEqual(answer["schemes"]["order0_mid"]["xi_max"], 0.0625, places=14)
+        for scheme in answer["schemes"].values():
+            self.assertAlmostEqual(scheme["xi_per_length"], scheme["xi"] / 2.5, places=15)
+            self.assertAlmostEqual(scheme["xi_max_per_length"], scheme["xi_max"] / 2.5, places=15)
+
+    def test_cubic_against_closed_forms(self):
+        # s = x^3 on [0, 1], one interval: order 1 errs by x - x^3, whose integral is 1/4, its maximum 2 / (3 sqrt 3).
+        ray = {
+            "signal": {"kind": "piecewise_polynomial", "breaks": [0, 1], "coefficients": [[0, 0, 0, 1]]},
+            "sampling": {"kind": "constant", "step": 1},
+            "schemes": ["order1"],
+        }
+        scheme = self.json_of("eval", "-", stdin=ray)["schemes"]["order1"]
+        self.assertAlmostEqual(scheme["xi"], 0.25, places=15)
+        self.assertAlmostEqual(scheme["xi_max"], 2 / (3 * math.sqrt(3)), places=15)
+
+    def test_ray_through_an_inline_volume(self):
+        # s = (t / L)^3, L = sqrt 3, with integral L/4; the samples 0, 1/8, 1 at t = 0, L/2, L, each held over L/2.
+        schemes = self.json_of("eval", "-", stdin=VOLUME_RAY)["schemes"]
+        self.assertAlmostEqual(schemes["order0_left"]["xi"], 3**0.5 * (1 / 4 - 1 / 16), places=15)
+        self.assertAlmostEqual(schemes["order0_right"]["xi"], 3**0.5 * (1 / 16 + 1 / 2 - 1 / 4), places=15)
+
+    def test_volume_file_relative_to_the_case(self):
+        (self.folder / "inner").mkdir()
+        self.write("inner/v.nrrd", b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n" + bytes(7) + b"\1")
+        self.write("inner/case.json", changed(VOLUME_RAY, "/signal/volume", "v.nrrd"))
+        from_file = self.json_of("eval", "inner/case.json")
+        self.assertEqual(from_file, self.json_of("eval", "-", stdin=VOLUME_RAY))
+        by_name = changed(VOLUME_RAY, "/signal/volume", "v")
+        self.assertEqual(self.json_of("eval", "-", "--data", "inner", stdin=by_name), from_file)
+        self.assertEqual(self.json_of("eval", "-", stdin=by_name, environment={"RAYTRUTH_DATA": "x:inner"}), from_file)
+
+    def test_lost_first_byte_is_repaired_or_warned_of(self):
+        self.write("v.nrrd", b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n" + bytes(6) + b"\1\n")
+        case = changed(VOLUME_RAY, "/signal/volume", "v.nrrd")
+        done = self.run_program("eval", "-", stdin=case)
+        self.assertEqual(done.returncode, 0)
+        self.assertIn(b"first_byte", done.stderr)
+        repaired = self.run_program("eval", "-", stdin=changed(case, "/signal/repair", "first_byte"))
+        self.assertEqual(repaired.stderr, b"")
+        self.assertEqual(json.loads(repaired.stdout), self.json_of("eval", "-", stdin=VOLUME_RAY))
+
+    def test_empty_ray(self):
+        for case in [changed(VOLUME_RAY, "/signal/length", 0), changed(VOLUME_RAY, "/signal/origin", [9, 0, 0])]:
+            answer = self.json_of("eval", "-", stdin=case)
+            self.assertEqual(answer["length"], 0)
+            for scheme in answer["schemes"].values():
+                self.assertEqual((scheme["xi"], scheme["xi_max"], scheme["samples"]), (0, 0, 0))
+                self.assertIsNone(scheme["xi_per_length"])
+
+    def test_array_of_cases_is_answered_by_an_array(self):
+        one = self.json_of("eval", "-", stdin=RAY)
+        self.assertEqual(self.json_of("eval", "-", stdin=[RAY]), [one])
+        two = self.json_of("eval", "-", "-j", "2", stdin=[RAY, VOLUME_RAY, RAY])
+        self.assertEqual([two[0], two[2]], [one, one])
+
+    def test_scheme_that_cannot_answers_why(self):
+        case = changed(RAY, "/sampling", {"kind": "cells"})
+        answer = self.json_of("eval", "-", stdin=case)["schemes"]
+        self.assertEqual(answer["virtual_catmull_rom"]["status"], "refused")
+        self.assertIn("constant step", answer["virtual_catmull_rom"]["why"])
+        self.assertIn("xi", answer["order1"])
+
+    def test_errors_beyond_binary64_are_refused_not_infinite(self):
+        case = changed(RAY, "/signal/coefficients", [[1.7e308, -1.7e308], [-1.7e308]])
+        done = self.output_of("eval", "-", stdin=changed(case, "/schemes", ["order0_left"]))
+        self.assertEqual(json.loads(done)["schemes"]["order0_left"]["status"], "refused")
+        for word in ("nan", "inf", "NaN", "Infinity"):
+            self.assertNotIn(word, done)
+
+    def test_transfer_functions(self):
+        opacity = {"points": [{"s": 0, "opacity": 1, "color": [1, 1, 1]}], "unit_length": 2}
+        done = self.run_program("eval", "-", stdin=changed(RAY, "/transfer_function", opacity))
+        self.assertEqual(done.returncode, 0)
+        self.assertIn(b"clamped", done.stderr)
+        self.write("tf.json", RAY["transfer_function"])
+        self.output_of("eval", "-", stdin=changed(RAY, "/transfer_function", "tf.json"))
+
+
+class Refusals(ProgramTest):
+    """(document, JSON pointer named, words of the message)"""
+
+    points = "/transfer_function/points"
+    point = {"s": 2, "extinction": 0, "color": [0, 0, 0]}
+    bad = [
+        (changed(RAY, "/schemes/1", "order3"), "/schemes/1", "order2"),
+        (changed(RAY, "/schemes/1", "order0mid"), "/schemes/1", "(perhaps order0_mid)"),
+        (changed(RAY, "/schemes/1", "reference"), "/schemes/1", "each scheme once"),
+        (changed(RAY, "/schemes", []), "/schemes", "list"),
+        (changed(RAY, "/schemes", ...), "/schemes", "found nothing"),
+        (changed(RAY, "/schemes/0", 3), "/schemes/0", "found 3"),
+        (changed(RAY, "/scheme", []), "/scheme", "unknown key"),
+        (changed(RAY, "/new\nline", 1), "/new\\nline", "unknown key"),
+        (changed(RAY, "/a~1b~0c", 1), "/a~1b~0c", "unknown key"),
+        (changed(RAY, "/sampling/step", 0), "/sampling/step", "a number > 0"),
+        (changed(RAY, "/sampling/step", -1), "/sampling/step", "found -1"),
+        (changed(RAY, "/sampling/step", "x" * 500), "/sampling/step", "..."),
+        (changed(RAY, "/sampling/step", 1e-9), "/sampling", "10000000 samples"),
+        (changed(RAY, "/sampling/step", None), "/sampling/step", "found null"),
+        (changed(RAY, "/sampling/kind", "cells"), "/sampling/step", "unknown key"),
+        (changed(RAY, "/sampling", []), "/sampling", "an object"),
+        (changed(RAY, "/signal/kind", "trilinaer"), "/signal/kind", "perhaps trilinear"),
+        (changed(RAY, "/signal/breaks/0", 0.5), "/signal/breaks/0", "found 0.5"),
+        (changed(RAY, "/signal/breaks/1", 0), "/signal/breaks/1", "a number > 0"),
+        (changed(RAY, "/signal/breaks", [0]), "/signal/breaks", "at least 2"),
+        (changed(RAY, "/signal/breaks/2", []), "/signal/breaks/2", "a number"),
+        (changed(RAY, "/signal/coefficients/0", []), "/signal/coefficients/0", "found a list of 0 items"),
+        (changed(RAY, "/signal/coefficients/1", [1] * 11), "/signal/coefficients/1", "1 to 10"),
+        (changed(RAY, "/signal/coefficients/2", [1]), "/signal/coefficients", "3 lists"),
+        (changed(RAY, "/signal/coefficients/1/3", 1.7e308), "/signal/coefficients", "overflow"),
+        (changed(RAY, "/emission", "glow"), "/emission", "associated"),
+        (changed(RAY, points, []), points, "at least 1"),
+        (changed(RAY, points + "/0/s", 5), points + "/1", "sorted"),
+        (changed(changed(RAY, points + "/0/s", 1), points + "/2", {**point, "s": 1}), points + "/2", "third"),
+        (changed(RAY, points + "/1/extinction", -1), points + "/1/extinction", ">= 0"),
+        (changed(RAY, points + "/1/color", [1, 1]), points + "/1/color", "3"),
+        (changed(RAY, points + "/1/color/1", -1), points + "/1", "color"),
+        (changed(RAY, points + "/0", {"s": 0, "opacity": 0, "color": [0, 0, 0]}), points + "/0/opacity", "unknown"),
+        (changed(RAY, "/transfer_function/unit_length", 1), points + "/0/extinction", "unknown"),
+        (changed(RAY, "/transfer_function", "no.json"), "/transfer_function", "no.json"),
+        (changed(VOLUME_RAY, "/signal/length", -1), "/signal/length", "found -1"),
+        (changed(VOLUME_RAY, "/signal/origin", [1, 2]), "/signal/origin", "3 numbers"),
+        (changed(VOLUME_RAY, "/signal/origin/1", "a"), "/signal/origin/1", "a number"),
+        (changed(VOLUME_RAY, "/signal/origin/1", 1e30), "/signal/origin", "2^40"),
+        (changed(VOLUME_RAY, "/signal/direction", [0, 0, 0]), "/signal/direction", "direction"),
+        (changed(VOLUME_RAY, "/signal/volume/size/0", 3), "/signal/volume/values", "12 numbers"),
+        (changed(VOLUME_RAY, "/signal/volume/size/0", 0), "/signal/volume/size/0", "found 0"),
+        (changed(VOLUME_RAY, "/signal/volume/size/0", 1.5), "/signal/volume/size/0", "found 1.5"),
+        (changed(VOLUME_RAY, "/signal/volume/size", [2**33, 2, 2]), "/signal/volume/size", "2^33"),
+        (changed(VOLUME_RAY, "/signal/volume/size/0", 10**30), "/signal/volume/size/0", "found 1e+30"),
+        (changed(VOLUME_RAY, "/signal/volume/size", [2, 2]), "/signal/volume/size", "3 sizes"),
+        (changed(VOLUME_RAY, "/signal/volume/values/3", None), "/signal/volume/values/3", "found null"),
+        (changed(VOLUME_RAY, "/signal/volume", "nowhere"), "/signal/volume", "nowhere"),
+        (changed(VOLUME_RAY, "/signal/volume", "./nowhere.nrrd"), "/signal/volume", "nowhere.nrrd"),
+        (changed(VOLUME_RAY, "/signal/repair", "first_byte"), "/signal/repair", "file"),
+        ([RAY, changed(RAY, "/sampling/step", 0)], "/1/sampling/step", "found 0"),
+        ([], "/", "list"),
+        (5, "/", "an object"),
+    ]
+
+    def test_place_and_reason_in_one_line(self):
+        for document, pointer, words in self.bad:
+            with self.subTest(pointer=pointer, words=words):
+                file = self.write("case.json", document)
+                self.assert_refused(self.run_program("eval", file), f"case.json: {pointer}: ", words)
+
+    def test_text_that_is_no_json(self):
+        ray = json.dumps(RAY)
+        for text, words in [
+            ("", "line 1, column 1"),
+            ("{", "line 1, column 2"),
+            ('{\n  "a": nan}', "line 2, column 9"),
+            ('{"a": Infinity}', "line 1"),
+            ('{"a": 1e999}', "1e999"),
+            ('{"a": 01}', "line 1"),
+            ("{'a': 1}", "line 1"),
+            ('{"a": 1,}', "line 1"),
+            (ray + "x", "line 1"),
+            ("// comment\n" + ray, "line 1"),
+            (b'"\xff\xfe"', "UTF-8"),
+            (b"\xef\xbb\xbf" + ray.encode(), "byte order mark"),
+            (b"\x00\x01\x02", "line 1"),
+            ('{"a": 1, "a": 2}', 'the key "a" twice'),
+            ('{"signal": {"b": [{"a": 1, "a": 2}]}}', "/signal/b/0: "),
+            ("[" * 65 + "]" * 65, "deeper than 64"),
+            ("[" * 100000, "deeper than 64"),
+            ("{" + ",".join(f'"k{i}":0' for i in range(2000)) + "}", "1000 members"),
+            ('"' + "long" * 100000, "line 1"),
+        ]:
+            with self.subTest(text=text[:40]):
+                file = self.write("case.json", text)
+                done = self.run_program("eval", file)
+                self.assert_refused(done, "case.json: ", words)
+                self.assertLess(len(done.stderr), 400)
+
+    def test_files_that_cannot_be_read(self):
+        self.assert_refused(self.run_program("eval", "absent.json"), "absent.json: ", "No such file")
+        self.assert_refused(self.run_program("eval", "."), "a folder")
+        self.assert_refused(self.run_program("eval", "a\nb"), "a\\nb")
+        self.assert_refused(self.run_program("eval", "-", stdin=b""), "standard input")
+
+    def test_integers_written_as_floats_count(self):
+        case = json.dumps(VOLUME_RAY).replace("[2, 2, 2]", "[2.0, 2e0, 2]")
+        self.output_of("eval", self.write("case.json", case))
+
+    def test_damaged_volume(self):
+        header = b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n"
+        case = self.write("case.json", changed(VOLUME_RAY, "/signal/volume", "v.nrrd"))
+        self.write("v.nrrd", header + bytes(7))
+        self.assert_refused(self.run_program("eval", case), "case.json: /signal/volume: ", "v.nrrd")
+        self.write("v.nrrd", header.replace(b"2 2 2", b"1048576 1048576 1") + bytes(8))
+        self.assert_refused(self.run_program("eval", case), "case.json: /signal/volume: ", "v.nrrd")
+        self.write("v.nrrd", header + bytes(8))
+        repair = self.write("repair.json", changed(changed(VOLUME_RAY, "/signal/volume", "v.nrrd"), "/signal/repair", "first_byte"))
+        self.assert_refused(self.run_program("eval", repair), "repair.json: /signal/repair: ", "0x0A")
+
+
+if __name__ == "__main__":
+    unittest.main()

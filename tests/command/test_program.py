@@ -1,0 +1,138 @@
+"""`raytruth` itself: help, lists, volumes, streams, and plots where matplotlib is missing."""
+
+import os
+import subprocess
+import unittest
+
+from support import EXPERIMENT, PROGRAM, RAY, ProgramTest, changed
+
+COMMANDS = ["run", "list", "eval", "plot", "diff", "info"]
+HEADER = b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 3 4\nencoding: raw\nspacings: 1 1 2\n\n"
+
+
+class Help(ProgramTest):
+    def test_version(self):
+        self.assertRegex(self.output_of("--version"), r"^raytruth \d+\.\d+\.\d+ \(.+\)\n$")
+
+    def test_every_command_has_help_with_an_example(self):
+        overview = self.output_of("--help")
+        for command in COMMANDS:
+            self.assertIn(command, overview)
+            self.assertIn(f"Example:\n  raytruth {command}", self.output_of(command, "--help"))
+
+    def test_misspelt(self):
+        self.assert_refused(self.run_program("evla", "case.json"), "evla", "(perhaps eval)")
+        self.assert_refused(self.run_program("list", "schemas"), "schemes")
+
+
+class Lists(ProgramTest):
+    kinds = ["signals", "fields", "transfers", "samplings", "schemes", "measures", "shadings", "tables", "experiments"]
+
+    def test_everything(self):
+        everything = self.json_of("list", "--json")
+        self.assertEqual(list(everything), self.kinds)
+        text = self.output_of("list")
+        for kind, entries in everything.items():
+            self.assertEqual(self.json_of("list", kind, "--json"), entries)
+            for entry in entries:
+                self.assertIn(entry["name"], text)
+                self.assertTrue(entry["summary"])
+
+    def test_kinds_without_entries_say_so(self):
+        self.assertEqual(self.output_of("list", "tables"), "tables: none\n")
+
+    def test_experiments_of_the_current_folder(self):
+        (self.folder / "experiments").mkdir()
+        self.write("experiments/small.json", EXPERIMENT)
+        self.write("experiments/other.json", {"something": "else"})
+        listed = self.json_of("list", "experiments", "--json")
+        self.assertEqual(listed, [{"name": "small", "summary": "Does it run?", "file": "experiments/small.json"}])
+
+
+class Volumes(ProgramTest):
+    def test_description(self):
+        self.write("v.nrrd", HEADER + bytes(range(24)))
+        description = self.json_of("info", "v.nrrd", "--json")
+        self.assertEqual((description["size"], description["spacing"]), ([2, 3, 4], [1, 1, 2]))
+        self.assertEqual((description["minimum"], description["maximum"], description["levels"]), (0, 23, 24))
+        self.assertFalse(description["lost_first_byte"])
+        text = self.output_of("info", "v", "--data", ".")
+        self.assertIn("2 3 4", text)
+        self.assertIn("0 .. 23", text)
+
+    def test_sign_of_a_lost_first_byte(self):
+        self.write("v.nrrd", HEADER + bytes(23) + b"\n")
+        done = self.run_program("info", "v.nrrd")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn(b"first_byte", done.stderr)
+        self.assertIn(b"likely", done.stdout)
+
+    def test_refused(self):
+        self.assert_refused(self.run_program("info", "absent"), "absent")
+        self.write("v.nrrd", HEADER + bytes(23))
+        self.assert_refused(self.run_program("info", "v.nrrd"), "v.nrrd")
+        self.write("v.nrrd", HEADER.replace(b"2 3 4", b"1048576 1048576 1") + bytes(23))
+        self.assert_refused(self.run_program("info", "v.nrrd"), "v.nrrd")
+        self.write("v.txt", b"")
+        self.assert_refused(self.run_program("info", "./v.txt"), "v.txt")
+
+
+class Streams(ProgramTest):
+    def test_reader_that_stops_early(self):
+        """More than a pipe holds, to a reader that is gone."""
+        case = self.write("cases.json", [RAY] * 2000)
+        for arguments in (["eval", case], ["list"]):
+            reading, writing = os.pipe()
+            os.close(reading)
+            done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, stdout=writing, stderr=subprocess.PIPE)
+            os.close(writing)
+            self.assertEqual((done.returncode, done.stderr), (0, b""))
+
+    def test_full_disk(self):
+        for arguments in (["list"], ["--help"], ["eval", self.write("case.json", RAY)]):
+            with open("/dev/full", "wb") as full:
+                done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, stdout=full, stderr=subprocess.PIPE)
+            self.assertEqual(done.returncode, 2)
+            self.assertEqual(done.stderr.count(b"\n"), 1)
+
+    def test_case_from_a_pipe(self):
+        read = subprocess.run(["bash", "-c", '"$0" eval <(cat)', PROGRAM], input=str(RAY).replace("'", '"').encode(),
+                              stdout=subprocess.PIPE)
+        self.assertEqual(read.returncode, 0)
+
+
+class Plots(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.output_of("run", self.write("experiment.json", EXPERIMENT), "-o", ".")
+
+    def interpreter(self, script):
+        path = self.folder / "python"
+        path.write_text("#!/bin/sh\n" + script)
+        path.chmod(0o755)
+        return {"RAYTRUTH_PYTHON": str(path)}
+
+    def test_without_matplotlib(self):
+        without = self.interpreter("echo 'ModuleNotFoundError: no matplotlib' >&2; exit 1\n")
+        self.assert_refused(self.run_program("plot", "small.json", environment=without), "python3-matplotlib", code=3)
+        nowhere = {"RAYTRUTH_PYTHON": "/no/such/python"}
+        self.assert_refused(self.run_program("plot", "small.json", environment=nowhere), "python3-matplotlib", code=3)
+
+    def test_plot_appears_whole_or_not_at_all(self):
+        fake = self.interpreter('[ $# -lt 3 ] && exit 0; echo half > "$3"; [ "$4" = png ] && exit 0; echo Broken >&2; exit 1\n')
+        before = self.names_in_folder()
+        self.assert_refused(self.run_program("plot", "small.json", environment=fake), "small.json", "Broken")
+        self.assertEqual(self.names_in_folder(), before)
+        self.output_of("plot", "small.json", "--format", "png", "-o", "plots", environment=fake)
+        self.assertEqual([path.name for path in (self.folder / "plots").iterdir()], ["small.png"])
+
+    def test_refused(self):
+        self.assert_refused(self.run_program("plot", "absent.json"), "absent.json")
+        self.assert_refused(self.run_program("plot", "small.json", "--format", "gif"), "gif")
+        self.write("bare.json", changed(EXPERIMENT, "/plot", ...))
+        self.write("result.json", self.json_of("run", "bare.json"))
+        self.assert_refused(self.run_program("plot", "result.json"), "result.json: /experiment/plot: ")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,173 @@
+"""The program's own checks and the JSON Schemas must accept and refuse the same documents."""
+
+import json
+import re
+import unittest
+
+import jsonschema
+
+import test_eval
+import test_run
+from support import EXPERIMENT, RAY, SOURCE, VOLUME_RAY, ProgramTest, changed
+
+SCHEMAS = {name: json.loads((SOURCE / f"experiments/schemas/{name}.json").read_text()) for name in ("experiment", "case", "result")}
+STORE = {schema["$id"]: schema for schema in SCHEMAS.values()}
+
+
+def validator(name):
+    resolver = jsonschema.RefResolver.from_schema(SCHEMAS[name], store=STORE)
+    return jsonschema.Draft202012Validator(SCHEMAS[name], resolver=resolver)
+
+
+def places(document, pointer=""):
+    """Every place in a document but its root: (JSON pointer, value)."""
+    items = document.items() if isinstance(document, dict) else enumerate(document) if isinstance(document, list) else []
+    for key, value in items:
+        place = f"{pointer}/{key}"
+        yield place, value
+        yield from places(value, place)
+
+
+def mutations(document):
+    """Documents that differ in one place: another type, a number out of range, a member less, an unknown one more."""
+    for pointer, value in places(document):
+        for wrong in (None, True, -1, 1e300, "", "word", [], {}, [None], {"a": 1}):
+            yield f"{pointer} = {json.dumps(wrong)}", changed(document, pointer, wrong)
+        if isinstance(value, dict):
+            yield f"{pointer}/unknown", changed(document, pointer + "/unknown", 1)
+        if not pointer.rpartition("/")[2].isdigit():
+            yield f"{pointer} removed", changed(document, pointer, ...)
+    yield "/unknown", changed(document, "/unknown", 1)
+
+
+# What no schema can say, as mutations that it lets pass: order, files that exist, names that occur elsewhere.
+BEYOND_CASE_SCHEMA = re.compile(
+    r"""
+      /signal/breaks/[12]\ =\ (1e\+300|-1)  # not ascending, or a power of a length overflows
+    | /signal/origin/\d\ =\ 1e\+300
+    | /signal/volume\ =\ "word"
+    | /transfer_function\ =\ "word"
+    | /transfer_function/points/0/s\ =\ 1e\+300
+    | /transfer_function/points/1/s\ =\ -1
+    """,
+    re.VERBOSE,
+)
+BEYOND_EXPERIMENT_SCHEMA = re.compile(
+    r"""
+      /fields/\d/name\ =\ "word"  # the checks name the fields
+    | /fields/\d/smoothing\ =\ 1e\+300
+    | /rays/length\ =\ 1e\+300
+    | .*/rows?(\ =\ {"a":\ 1}|/unknown)
+    | .*/rows?/field(/\d)?\ =\ "word"
+    | /published/0/(measured|low|high)\ =\ "word"
+    | .*/column\ =\ "word"
+    | /plot/panels/0/(group|series)\ =\ "word"
+    """,
+    re.VERBOSE,
+)
+
+
+class Agreement(ProgramTest):
+    def program_accepts(self, command, document):
+        done = self.run_program(command, self.write("document.json", document))
+        self.assertIn(done.returncode, (0, 2), done.stderr)
+        return done.returncode == 0
+
+    def assert_agreement(self, command, schema, documents, beyond):
+        """Both say the same, but for what is beyond the schema: that the program alone refuses."""
+        for what, document in documents:
+            with self.subTest(what=what):
+                verdicts = schema.is_valid(document), self.program_accepts(command, document)
+                if beyond.fullmatch(what):
+                    self.assertEqual(verdicts, (True, False), "(schema, program)")
+                else:
+                    self.assertEqual(*verdicts, "schema and program disagree")
+
+    def test_cases(self):
+        schema = validator("case")
+        opacity = {"points": [{"s": s, "opacity": 0.5, "color": [1, 1, 1]} for s in (0, 1)], "unit_length": 2}
+        for case in (RAY, VOLUME_RAY, [RAY, VOLUME_RAY], changed(RAY, "/transfer_function", opacity)):
+            self.assertTrue(schema.is_valid(case))
+            self.assertTrue(self.program_accepts("eval", case))
+        for case in (RAY, VOLUME_RAY, changed(RAY, "/transfer_function", opacity)):
+            self.assert_agreement("eval", schema, mutations(case), BEYOND_CASE_SCHEMA)
+
+    def test_experiments(self):
+        schema = validator("experiment")
+        self.assertTrue(schema.is_valid(EXPERIMENT))
+        self.assertTrue(self.program_accepts("run", EXPERIMENT))
+        self.assert_agreement("run", schema, mutations(EXPERIMENT), BEYOND_EXPERIMENT_SCHEMA)
+
+    def test_refused_documents_of_the_other_tests(self):
+        """Listed by pointer and words: those that only the program can refuse."""
+        only_program = {
+            ("/signal/breaks/1", "a number > 0"),
+            ("/signal/coefficients", "3 lists"),
+            ("/signal/coefficients", "overflow"),
+            ("/sampling", "10000000 samples"),
+            ("/transfer_function/points/1", "sorted"),
+            ("/transfer_function/points/2", "third"),
+            ("/transfer_function", "no.json"),
+            ("/signal/origin", "2^40"),
+            ("/signal/direction", "direction"),
+            ("/signal/volume/values", "12 numbers"),
+            ("/signal/volume/size", "2^33"),
+            ("/signal/volume", "nowhere"),
+            ("/signal/volume", "nowhere.nrrd"),
+            ("/signal/repair", "file"),
+            ("/fields/1/name", "each name once"),
+            ("/fields/0/smoothing", "16"),
+            ("/measures/0", "constant step"),
+            ("/published/0/measured", "perhaps xi_p50"),
+            ("/published/1/claim", "once"),
+            ("/published/0/row/field", "white"),
+            ("/published/0/row/colour", "column"),
+            ("/checks/0/rows/field/0", "white"),
+            ("/checks/0/column", "one of"),
+        }
+        for name, bad in (("case", test_eval.Refusals.bad), ("experiment", test_run.Refusals.bad)):
+            schema = validator(name)
+            for document, pointer, words in bad:
+                with self.subTest(pointer=pointer, words=words):
+                    self.assertEqual(schema.is_valid(document), (pointer, words) in only_program)
+
+
+class Validity(ProgramTest):
+    def test_schemas_are_schemas(self):
+        for schema in SCHEMAS.values():
+            jsonschema.Draft202012Validator.check_schema(schema)
+
+    def test_committed_experiments(self):
+        paths = sorted(SOURCE.glob("experiments/*.json"))
+        self.assertTrue(paths)
+        for path in paths:
+            validator("experiment").validate(json.loads(path.read_text()))
+
+    def test_committed_results(self):
+        for path in sorted(SOURCE.glob("results/*.json")):
+            validator("result").validate(json.loads(path.read_text()))
+
+    def test_results(self):
+        absent = {"name": "absent", "kind": "volume", "volume": "no_such_volume"}
+        for document in (EXPERIMENT, changed(EXPERIMENT, "/fields/2", absent)):
+            validator("result").validate(self.json_of("run", self.write("small.json", document)))
+
+    def test_the_experiment_in_a_result_runs_and_gives_the_same_rows(self):
+        result = self.json_of("run", self.write("small.json", EXPERIMENT))
+        again = self.json_of("run", self.write("again.json", result["experiment"]))
+        self.assertEqual(again["experiment"], result["experiment"])
+        self.assertEqual(again["rows"], result["rows"])
+
+    def test_names_are_those_of_the_catalogue(self):
+        schemes = [entry["name"] for entry in self.json_of("list", "schemes", "--json")]
+        self.assertEqual(SCHEMAS["experiment"]["$defs"]["scheme"]["enum"], schemes)
+        self.assertEqual(SCHEMAS["case"]["$defs"]["case"]["properties"]["schemes"]["items"]["enum"], ["reference", *schemes])
+        for kind, name, place in [("fields", "experiment", "field"), ("measures", "experiment", "measure"),
+                                  ("samplings", "experiment", "sampling"), ("samplings", "case", "sampling"), ("signals", "case", "signal")]:
+            listed = {entry["name"] for entry in self.json_of("list", kind, "--json")}
+            stated = {option["properties"]["kind"]["const"] for option in SCHEMAS[name]["$defs"][place]["oneOf"]}
+            self.assertEqual(stated, listed)
+
+
+if __name__ == "__main__":
+    unittest.main()
