@@ -19,6 +19,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Differences, and parabolas through values at uneven distances, stay within binary64.
+constexpr double largest_value = 0x1p900;
+
 constexpr std::string_view why_no_reference = "the certified reference comes with a later version of raytruth";
 
 std::array<double, 3> read_vector(const JsonReader& json) {
@@ -69,6 +72,14 @@ std::vector<std::string> read_schemes(const JsonReader& json) {
   return schemes;
 }
 
+template <int Degree>
+void check_values(const JsonReader& json, const Chain<Degree>& signal) {
+  for (const auto& piece : signal.pieces)
+    for (const double value : piece.polynomial.coefficients)
+      if (!(std::abs(value) <= largest_value))
+        json.refuse(fmt::format("values up to {}", value), "a signal of values up to 2^900 in magnitude");
+}
+
 Json refused(std::string_view why) { return {{"status", "refused"}, {"why", why}}; }
 
 template <int Degree>
@@ -114,6 +125,7 @@ Case CaseReader::read(const JsonReader& json) {
     result.signal = read_trilinear(signal);
   else
     result.signal = read_piecewise_polynomial(signal);
+  std::visit([&signal](const auto& chain) { check_values(signal, chain); }, result.signal);
   return result;
 }
 

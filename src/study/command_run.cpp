@@ -23,7 +23,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Row complete_row(std::string_view measure, const std::string& field, Row row, const std::string& why = {}) {
-  Row complete{{"measure", std::string(measure)}, {"field", field}};
+  Row complete{{"measure", std::string(measure)}, {"field", field.empty() ? Value() : Value(field)}};
   complete.insert(complete.end(), std::make_move_iterator(row.begin()), std::make_move_iterator(row.end()));
   complete.emplace_back("status", why.empty() ? "ok" : "refused");
   complete.emplace_back("why", why.empty() ? Value() : Value(why));
@@ -69,46 +69,84 @@ struct Findings {
   std::vector<Row> rows;
 };
 
-/// What one measure finds in one field.
-Json measure_field(const Experiment& experiment, const FieldSource& source, const JsonReader& options,
-                   const Field& field) {
-  const std::string kind = options.at("kind").text();
-  const auto measure =
-      std::find_if(measures.begin(), measures.end(), [&kind](const Measure& m) { return m.name == kind; });
-  Json rows = Json::array();
-  for (Row& row : source.json.blame_for([&] { return measure->rows(experiment, options, field); }))
-    rows.push_back(to_json(complete_row(kind, source.name, std::move(row))));
-  return {{"field", describe(field)}, {"rows", std::move(rows)}};
+Json rows_json(const Measure& measure, const std::string& field, std::vector<Row> rows) {
+  Json json = Json::array();
+  for (Row& row : rows) json.push_back(to_json(complete_row(measure.name, field, std::move(row))));
+  return json;
 }
 
-Findings run_all(const Experiment& experiment, const std::vector<std::filesystem::path>& folders, Journal& journal) {
-  Findings findings;
-  ProgressBar bar(experiment.fields.size() * experiment.measures.size());
-  for (const FieldSource& source : experiment.fields) {
-    LazyField field(experiment, source, folders);
-    for (const JsonReader& options : experiment.measures) {
-      const std::string kind = options.at("kind").text();
-      const std::string name = source.name + "/" + kind;
-      const Json* const finished = journal.find(name);
-      bar.show(name);
-      Json part;
-      if (finished != nullptr) {
-        part = *finished;
-      } else if (const Field* const made = field.get(bar)) {
-        part = measure_field(experiment, source, options, *made);
-        journal.add(name, part);
-      } else {
-        const Row row = complete_row(kind, source.name, {}, field.why_absent());
-        part = {{"field", {{"status", "refused"}, {"why", field.why_absent()}}}, {"rows", {to_json(row)}}};
-      }
-      bar.advance(finished == nullptr);
-      findings.fields[source.name] = part.at("field");
-      for (const Json& row : part.at("rows"))
-        findings.rows.push_back(read_row(JsonReader::from_json(row, experiment.json)));
+/// The work of one experiment, unit by unit; a unit is a measure of one field, or a measure alone.
+class UnitRunner {
+ public:
+  UnitRunner(const Experiment& experiment, const std::vector<std::filesystem::path>& folders, Journal& journal)
+      : experiment_(experiment), folders_(folders), journal_(journal), bar_(count_units(experiment)) {}
+
+  Findings run_all() {
+    for (const FieldSource& source : experiment_.fields) {
+      LazyField field(experiment_, source, folders_);
+      for_each_measure(true, [&](const Measure& measure, const JsonReader& options) {
+        const Json part = finish(fmt::format("{}/{}", source.name, measure.name), [&]() -> std::optional<Json> {
+          const Field* const made = field.get(bar_);
+          if (made == nullptr) return {};
+          auto rows = source.json.blame_for([&] { return measure.rows(experiment_, options, *made); });
+          return Json{{"field", describe(*made)}, {"rows", rows_json(measure, source.name, std::move(rows))}};
+        });
+        if (part.is_null()) {
+          findings_.fields[source.name] = {{"status", "refused"}, {"why", field.why_absent()}};
+          findings_.rows.push_back(complete_row(measure.name, source.name, {}, field.why_absent()));
+        } else {
+          findings_.fields[source.name] = part.at("field");
+        }
+      });
+    }
+    for_each_measure(false, [&](const Measure& measure, const JsonReader& options) {
+      finish(std::string(measure.name), [&]() -> std::optional<Json> {
+        return Json{{"rows", rows_json(measure, {}, measure.rows(experiment_, options, Field{}))}};
+      });
+    });
+    return std::move(findings_);
+  }
+
+ private:
+  template <class Visit>
+  void for_each_measure(bool of_fields, Visit&& visit) const {
+    for (const JsonReader& options : experiment_.measures) {
+      const Measure& measure = measure_of(options);
+      if (measure.of_fields == of_fields) visit(measure, options);
     }
   }
-  return findings;
-}
+
+  static std::size_t count_units(const Experiment& experiment) {
+    std::size_t count = 0;
+    for (const JsonReader& options : experiment.measures)
+      count += measure_of(options).of_fields ? experiment.fields.size() : 1;
+    return count;
+  }
+
+  /// What the unit comes to, from the journal or by doing it; null where it is refused.
+  template <class Work>
+  Json finish(const std::string& name, Work&& work) {
+    bar_.show(name);
+    const Json* const finished = journal_.find(name);
+    Json part = finished != nullptr ? *finished : Json();
+    if (finished == nullptr)
+      if (auto done = work()) {
+        part = std::move(*done);
+        journal_.add(name, part);
+      }
+    bar_.advance(finished == nullptr);
+    if (!part.is_null())
+      for (const Json& row : part.at("rows"))
+        findings_.rows.push_back(read_row(JsonReader::from_json(row, experiment_.json)));
+    return part;
+  }
+
+  const Experiment& experiment_;
+  const std::vector<std::filesystem::path>& folders_;
+  Journal& journal_;
+  ProgressBar bar_;
+  Findings findings_;
+};
 
 /// The result that is there already, if it is of this very run.
 std::optional<Json> finished_result(const std::filesystem::path& file, const Json& run) {
@@ -135,7 +173,8 @@ Json run_experiment(const Experiment& experiment, const RunOptions& options, con
   const auto clock_start = std::chrono::steady_clock::now();
   Journal journal = file.empty() ? Journal() : Journal(file, run, options.resume);
   const bool is_resumed = !journal.is_empty();
-  const Findings findings = run_all(experiment, volume_folders(options.data), journal);
+  const auto folders = volume_folders(options.data);
+  const Findings findings = UnitRunner(experiment, folders, journal).run_all();
 
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock_start).count();
   const auto threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);

@@ -174,13 +174,13 @@ JsonReader read_document(const std::string& path, std::string_view profile, std:
   return JsonReader::from_json(std::move(document), file);
 }
 
+}  // namespace
+
 const Measure& measure_of(const JsonReader& json) {
   const std::string kind = json.at("kind").word(names_of(measures));
   return *std::find_if(measures.begin(), measures.end(),
                        [&kind](const Measure& measure) { return measure.name == kind; });
 }
-
-}  // namespace
 
 Sampling read_sampling(const JsonReader& json) {
   Sampling sampling{json.at("kind").word(names_of(catalogue::samplings)), {}};
@@ -210,24 +210,33 @@ Experiment read_experiment(const std::string& path, std::string_view profile, st
   json.at("question").text();
   json.at("source").text();
 
+  const auto measure_items = json.at("measures").items();
+  const bool of_fields = std::any_of(measure_items.begin(), measure_items.end(),
+                                     [](const JsonReader& measure) { return measure_of(measure).of_fields; });
   RowNames names;
-  for (const JsonReader& field : json.at("fields").items()) {
-    check_field(field);
-    experiment.fields.push_back({read_name(field.at("name")), field});
-    add_unique(names.fields, field.at("name"), experiment.fields.back().name);
+  if (of_fields) {
+    for (const JsonReader& field : json.at("fields").items()) {
+      check_field(field);
+      experiment.fields.push_back({read_name(field.at("name")), field});
+      add_unique(names.fields, field.at("name"), experiment.fields.back().name);
+    }
+    const JsonReader rays = json.at("rays");
+    rays.only({"count", "length"});
+    experiment.rays = {rays.at("count").integer(1, most_rays), rays.at("length").positive_number()};
+  } else {
+    for (const char* const key : {"fields", "rays"})
+      if (const auto found = json.find(key)) found->refuse_value("a measure of fields beside it, or nothing,");
   }
-  json.at("rays").only({"count", "length"});
-  experiment.rays = {json.at("rays").at("count").integer(1, most_rays), json.at("rays").at("length").positive_number()};
   std::vector<std::string> samplings;
   for (const JsonReader& item : json.at("samplings").items()) {
     experiment.samplings.push_back(read_sampling(item));
     add_unique(samplings, item,
                fmt::format("{} {}", experiment.samplings.back().kind, experiment.samplings.back().step.value_or(0)));
   }
-  for (const JsonReader& scheme : json.at("schemes").items())
-    add_unique(names.schemes, scheme, scheme.word(scheme_names()));
+  if (const auto schemes = json.find("schemes"))
+    for (const JsonReader& scheme : schemes->items()) add_unique(names.schemes, scheme, scheme.word(scheme_names()));
   experiment.schemes = names.schemes;
-  for (const JsonReader& measure : json.at("measures").items()) {
+  for (const JsonReader& measure : measure_items) {
     const Measure& found = measure_of(measure);
     add_unique(names.measures, measure.at("kind"), std::string(found.name));
     found.columns(experiment, measure);  // refuses bad options before anything runs
@@ -266,7 +275,7 @@ Field make_field(const Experiment& experiment, const FieldSource& source,
 std::vector<Column> result_columns(const Experiment& experiment) {
   std::vector<Column> columns{
       {.name = "measure", .unit = "", .description = "what the row reports", .is_key = true},
-      {.name = "field", .unit = "", .description = "the field that the rays cross", .is_key = true},
+      {.name = "field", .unit = "", .description = "the field that the rays cross, if any", .is_key = true},
   };
   const auto add = [&columns](const Column& added) {
     if (std::none_of(columns.begin(), columns.end(), [&](const Column& column) { return column.name == added.name; }))

@@ -35,6 +35,7 @@ struct Options {
 
 Options read_options(const Experiment& experiment, const JsonReader& json) {
   json.only({"kind", "ratios", "printed"});
+  if (experiment.schemes.empty()) experiment.json.refuse("signal_error without schemes", "a member \"schemes\"");
   for (const Sampling& sampling : experiment.samplings)
     for (const std::string& scheme : experiment.schemes)
       catalogue::visit_scheme(scheme, [&]<class S>() {

@@ -80,11 +80,12 @@ class Answers(ProgramTest):
         self.assertIn("xi", answer["order1"])
 
     def test_errors_beyond_binary64_are_refused_not_infinite(self):
-        case = changed(RAY, "/signal/coefficients", [[1.7e308, -1.7e308], [-1.7e308]])
-        done = self.output_of("eval", "-", stdin=changed(case, "/schemes", ["order0_left"]))
-        self.assertEqual(json.loads(done)["schemes"]["order0_left"]["status"], "refused")
+        jump = {"kind": "piecewise_polynomial", "breaks": [0, 1e-300, 2e-300], "coefficients": [[0], [1e200]]}
+        case = changed(changed(RAY, "/signal", jump), "/sampling", {"kind": "constant", "step": 2e-300})
+        text = self.output_of("eval", "-", stdin=case)
+        self.assertEqual(json.loads(text)["schemes"]["order1"]["status"], "refused")
         for word in ("nan", "inf", "NaN", "Infinity"):
-            self.assertNotIn(word, done)
+            self.assertNotIn(word, text)
 
     def test_transfer_functions(self):
         opacity = {"points": [{"s": 0, "opacity": 1, "color": [1, 1, 1]}], "unit_length": 2}
@@ -126,6 +127,7 @@ class Refusals(ProgramTest):
         (changed(RAY, "/signal/coefficients/1", [1] * 11), "/signal/coefficients/1", "1 to 10"),
         (changed(RAY, "/signal/coefficients/2", [1]), "/signal/coefficients", "3 lists"),
         (changed(RAY, "/signal/coefficients/1/3", 1.7e308), "/signal/coefficients", "overflow"),
+        (changed(RAY, "/signal/coefficients/1/0", 1e300), "/signal", "2^900"),
         (changed(RAY, "/emission", "glow"), "/emission", "associated"),
         (changed(RAY, points, []), points, "at least 1"),
         (changed(RAY, points + "/0/s", 5), points + "/1", "sorted"),

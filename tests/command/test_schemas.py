@@ -44,6 +44,7 @@ def mutations(document):
 BEYOND_CASE_SCHEMA = re.compile(
     r"""
       /signal/breaks/[12]\ =\ (1e\+300|-1)  # not ascending, or a power of a length overflows
+    | /signal/(coefficients/\d/\d|volume/values/\d)\ =\ 1e\+300
     | /signal/origin/\d\ =\ 1e\+300
     | /signal/volume\ =\ "word"
     | /transfer_function\ =\ "word"
@@ -104,6 +105,7 @@ class Agreement(ProgramTest):
             ("/signal/breaks/1", "a number > 0"),
             ("/signal/coefficients", "3 lists"),
             ("/signal/coefficients", "overflow"),
+            ("/signal", "2^900"),
             ("/sampling", "10000000 samples"),
             ("/transfer_function/points/1", "sorted"),
             ("/transfer_function/points/2", "third"),
