@@ -1,18 +1,17 @@
 #include "volume/byte_stream.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <limits>
-#include <string>
+#include <new>
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "volume/refuse.hpp"
 
@@ -21,8 +20,6 @@ namespace {
 
 constexpr std::uint64_t deflate_most_ratio = 1032;
 constexpr std::string_view readable = "a readable regular file is allowed";
-
-std::string system_message(int error) { return std::generic_category().message(error); }
 
 std::uint64_t regular_file_size(const std::filesystem::path& file) {
   std::error_code error;
@@ -38,7 +35,23 @@ std::uint64_t regular_file_size(const std::filesystem::path& file) {
 
 }  // namespace
 
-void ByteStream::Close::operator()(gzFile_s* opened) const { gzclose_r(opened); }
+/// zlib's own reader of files does not notice an end within the last eight bytes, checksum and length, where one call
+/// asks for all of the data.
+struct ByteStream::Inflation {
+  Inflation() {
+    constexpr int gzip_format = 16 + MAX_WBITS;
+    if (inflateInit2(&state, gzip_format) != Z_OK) throw std::bad_alloc();
+  }
+  ~Inflation() { inflateEnd(&state); }
+  Inflation(const Inflation&) = delete;
+  Inflation& operator=(const Inflation&) = delete;
+  Inflation(Inflation&&) = delete;
+  Inflation& operator=(Inflation&&) = delete;
+
+  z_stream state{};
+  std::vector<unsigned char> input = std::vector<unsigned char>(std::size_t{1} << 16U);
+  bool is_complete = false;  // nothing was read since the end of a gzip stream, its checksum verified
+};
 
 ByteStream::ByteStream(std::filesystem::path file, std::uint64_t offset, bool gzip) : file_(std::move(file)) {
   const auto size = regular_file_size(file_);
@@ -46,52 +59,52 @@ ByteStream::ByteStream(std::filesystem::path file, std::uint64_t offset, bool gz
     refuse(file_, fmt::format("the file ends after {} bytes", size), fmt::format("its data begin after {}", offset));
   }
   bytes_left_in_file_ = size - offset;
-  if (gzip) {
-    const int descriptor = ::open(file_.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0) refuse(file_, system_message(errno), readable);
-    const bool at_data = ::lseek(descriptor, static_cast<off_t>(offset), SEEK_SET) >= 0;
-    inflated_.reset(at_data ? gzdopen(descriptor, "rb") : nullptr);
-    if (!inflated_) {
-      ::close(descriptor);
-      refuse(file_, "cannot be read", readable);
-    }
-    gzbuffer(inflated_.get(), 1U << 17U);
-    // zlib would hand out data without the gzip signature as they are.
-    if (gzdirect(inflated_.get()) != 0)
-      refuse(file_, "the data are not in gzip format", "gzip as announced is allowed");
-  } else {
-    raw_.open(file_, std::ios::binary);
-    if (!raw_) refuse(file_, system_message(errno), readable);
-    raw_.seekg(static_cast<std::streamoff>(offset));
-  }
+  stream_.open(file_, std::ios::binary);
+  if (!stream_) refuse(file_, std::generic_category().message(errno), readable);
+  stream_.seekg(static_cast<std::streamoff>(offset));
+  if (gzip) inflation_ = std::make_unique<Inflation>();
 }
 
+ByteStream::~ByteStream() = default;
+
 std::uint64_t ByteStream::most_bytes() const {
-  if (!inflated_) return bytes_left_in_file_;
+  if (!inflation_) return bytes_left_in_file_;
   constexpr auto largest = std::numeric_limits<std::uint64_t>::max();
   return bytes_left_in_file_ > largest / deflate_most_ratio ? largest : bytes_left_in_file_ * deflate_most_ratio;
 }
 
+std::size_t ByteStream::read_file(std::span<unsigned char> bytes) {
+  stream_.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (stream_.bad()) refuse(file_, "reading failed", readable);
+  return static_cast<std::size_t>(stream_.gcount());
+}
+
 std::size_t ByteStream::read(std::span<unsigned char> bytes) {
-  if (!inflated_) {
-    raw_.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    if (raw_.bad()) refuse(file_, "reading failed", readable);
-    return static_cast<std::size_t>(raw_.gcount());
-  }
+  if (!inflation_) return read_file(bytes);
+  constexpr std::string_view allowed = "whole gzip streams are allowed";
+  auto& state = inflation_->state;
   std::size_t done = 0;
   while (done < bytes.size()) {
+    if (state.avail_in == 0) {
+      state.next_in = inflation_->input.data();
+      state.avail_in = static_cast<unsigned>(read_file(inflation_->input));
+      if (state.avail_in == 0) {
+        if (inflation_->is_complete) break;
+        refuse(file_, "the gzip data end early", allowed);
+      }
+    }
+    if (std::exchange(inflation_->is_complete, false)) inflateReset(&state);
     constexpr std::size_t most_per_call = std::size_t{1} << 30U;
     const auto part = bytes.subspan(done, std::min(bytes.size() - done, most_per_call));
-    const int got = gzread(inflated_.get(), part.data(), static_cast<unsigned>(part.size()));
-    int error = Z_OK;
-    const std::string_view message = gzerror(inflated_.get(), &error);  // "<fd:3>: what is wrong"
-    if (got < 0 || error != Z_OK) {
-      refuse(file_,
-             fmt::format("the gzip data are damaged{}", message.substr(std::min(message.find(": "), message.size()))),
-             "a whole gzip stream is allowed");
+    state.next_out = part.data();
+    state.avail_out = static_cast<unsigned>(part.size());
+    const int result = inflate(&state, Z_NO_FLUSH);
+    if (result != Z_OK && result != Z_STREAM_END) {
+      refuse(file_, fmt::format("the gzip data are damaged: {}", state.msg != nullptr ? state.msg : zError(result)),
+             allowed);
     }
-    if (got == 0) break;
-    done += static_cast<std::size_t>(got);
+    inflation_->is_complete = result == Z_STREAM_END;
+    done += part.size() - state.avail_out;
   }
   return done;
 }

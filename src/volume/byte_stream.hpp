@@ -6,16 +6,19 @@
 #include <memory>
 #include <span>
 
-struct gzFile_s;  // zlib's
-
 namespace raytruth {
 
-/// The bytes of a regular file from `offset` on, inflated if `gzip`.
-/// Every member throws InputError: for what cannot be opened or read, and for gzip data that are none, that end early
-/// or whose checksum does not fit.
+/// The bytes of a regular file from `offset` on, inflated if `gzip` (several gzip streams in a row are one).
+/// Every member throws InputError: for what cannot be opened or read, and for gzip data that are none, that end early,
+/// whose checksum does not fit or that something else follows.
 class ByteStream {
  public:
   explicit ByteStream(std::filesystem::path file, std::uint64_t offset = 0, bool gzip = false);
+  ~ByteStream();
+  ByteStream(const ByteStream&) = delete;
+  ByteStream& operator=(const ByteStream&) = delete;
+  ByteStream(ByteStream&&) = delete;
+  ByteStream& operator=(ByteStream&&) = delete;
 
   /// No more bytes than this can come: those left in the file, and 1032 times as many where deflate packed them
   /// (258 bytes per 2 bits; zlib.net/zlib_tech.html).
@@ -29,14 +32,14 @@ class ByteStream {
   void skip(std::uint64_t count);
 
  private:
-  struct Close {
-    void operator()(gzFile_s* opened) const;
-  };
+  struct Inflation;
+
+  std::size_t read_file(std::span<unsigned char> bytes);
 
   std::filesystem::path file_;
   std::uint64_t bytes_left_in_file_ = 0;
-  std::ifstream raw_;
-  std::unique_ptr<gzFile_s, Close> inflated_;
+  std::ifstream stream_;
+  std::unique_ptr<Inflation> inflation_;  // if gzip
 };
 
 }  // namespace raytruth

@@ -179,7 +179,8 @@ TEST_F(VolumeNifti, RefusesFilesThatAreNone) {
   expect_refused(folder() / "folder.nii", "not a regular file");
   expect_refused(write("empty.nii", ""), "the file ends after 0 bytes; a NIfTI-1 header has 348");
   expect_refused(write("empty.nii.gz", ""), "");
-  expect_refused(write("plain.nii.gz", NiftiFields{}.with(twelve_bytes)), "not in gzip format");
+  expect_refused(write("plain.nii.gz", NiftiFields{}.with(twelve_bytes)),
+                 "the gzip data are damaged: incorrect header check");
   expect_refused(write("packed.nii", gzip(std::string(5000, 'x'))), "");
   expect_refused(write("text.nii", std::string(400, 'x')), "this is not NIfTI; NIfTI-1 is allowed");
   expect_refused(write("two.nii", NiftiFields{.sizeof_hdr = 540}.with(twelve_bytes)), "this is NIfTI-2");

@@ -330,8 +330,9 @@ TEST_F(VolumeNrrd, RefusesDamagedGzipData) {
     SCOPED_TRACE(length);
     refused(fields.attached(whole.substr(0, length)), "");
   }
-  refused(fields.attached(whole.substr(0, whole.size() - 1)), "the gzip data are damaged: unexpected end of file");
-  refused(fields.attached(twelve_bytes), "the data are not in gzip format");
+  refused(fields.attached(whole.substr(0, whole.size() - 1)),
+          "the gzip data end early; whole gzip streams are allowed");
+  refused(fields.attached(twelve_bytes), "the gzip data are damaged: incorrect header check");
   constexpr std::size_t header_size = 10;
   for (std::size_t position = header_size; position < whole.size(); ++position) {
     SCOPED_TRACE(position);
@@ -339,9 +340,22 @@ TEST_F(VolumeNrrd, RefusesDamagedGzipData) {
     damaged[position] = static_cast<char>(damaged[position] ^ 1);
     refused(fields.attached(damaged), "");
   }
+  refused(fields.attached(whole + "more"), "the gzip data are damaged: incorrect header check");
   auto wrong_checksum = whole;
   wrong_checksum[whole.size() - 8] = static_cast<char>(wrong_checksum[whole.size() - 8] ^ 1);
   refused(fields.attached(wrong_checksum), "incorrect data check");
+}
+
+// Data that fill buffers whole: the end of the file is met between the last voxel and the checksum behind it.
+TEST_F(VolumeNrrd, RefusesGzipDataWithoutAllOfTheirChecksum) {
+  for (const std::string size : {"1", "64", "65536", "262144"}) {
+    const NrrdFields fields{.sizes = "1 1 " + size, .encoding = "gzip"};
+    const auto whole = gzip(std::string(std::stoul(size), 'x'));
+    EXPECT_NO_THROW((void)read(fields.attached(whole)));
+    for (std::size_t missing = 1; missing <= 12; ++missing) {
+      refused(fields.attached(whole.substr(0, whole.size() - missing)), "the gzip data end early");
+    }
+  }
 }
 
 TEST_F(VolumeNrrd, RefusesValuesThatAreNotFinite) {
