@@ -23,7 +23,8 @@ def published(results):
             measured = "-"
             if claim["measured"] is not None:
                 measured = f"{number(claim['measured'])} ({number(claim['low'])} to {number(claim['high'])})"
-            rows.append([claim["claim"], number(claim["stated"]), measured, claim["verdict"], f"[{file.stem}](results/{file.name})"])
+            name = claim["claim"] + (f" ({claim['part']})" if "part" in claim else "")
+            rows.append([name, number(claim["stated"]), measured, claim["verdict"], f"[{file.stem}](results/{file.name})"])
     return table(["claim", "published", "measured (low to high)", "verdict", "experiment"], rows)
 
 

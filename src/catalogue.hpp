@@ -4,6 +4,7 @@
 #include "schemes/order1.hpp"
 #include "schemes/order2.hpp"
 #include "schemes/virtual_catmull_rom.hpp"
+#include "schemes/virtual_samples.hpp"
 
 #include <array>
 #include <cstddef>
@@ -15,7 +16,8 @@
 /// file and give it a line here; names, help, tests and plots follow from the line.
 namespace raytruth::catalogue {
 
-using Schemes = std::tuple<Order0Left, Order0Right, Order0Mid, Order1, Order2, VirtualCatmullRom>;
+using Schemes = std::tuple<Order0Left, Order0Right, Order0Mid, Order1, Order2, VirtualCatmullRom, VirtualCatmullRom1,
+                           VirtualCatmullRom3, VirtualCatmullRom7, VirtualLinear1, VirtualLinear3, VirtualLinear7>;
 
 /// An ingredient without a type of its own.
 struct Entry {
@@ -26,6 +28,9 @@ struct Entry {
 inline constexpr std::array signals{
     Entry{"piecewise_polynomial", "given coefficients, degree up to 9"},
     Entry{"trilinear", "a ray through a voxel grid, trilinear reconstruction: an exact chain of cubics"},
+    Entry{"tricubic", "a ray through a voxel grid, B-spline (prefiltered or not) or Catmull-Rom: exact, degree 9"},
+    Entry{"marschner_lobb", "the Marschner-Lobb signal itself along a ray through [-1, 1]^3"},
+    Entry{"analytic", "a test signal with a name: sines, Gaussians, a chirp, a step, a kink"},
 };
 
 inline constexpr std::array fields{

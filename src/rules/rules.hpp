@@ -21,6 +21,7 @@ struct Rules {
 #include "rules/order1.glsl"
 #include "rules/order2.glsl"
 #include "rules/virtual_catmull_rom.glsl"
+#include "rules/virtual_sample.glsl"
   // clang-format on
 
   static Bernstein<3, Real> cubic(const vec4& b) { return {{b[0], b[1], b[2], b[3]}}; }

@@ -2,6 +2,7 @@
 
 #include "core/chain.hpp"
 #include "core/error.hpp"
+#include "core/real.hpp"
 
 #include <fmt/format.h>
 
@@ -36,17 +37,21 @@ struct Samples {
 /// More samples than this on one ray are refused.
 inline constexpr std::int64_t largest_sample_count = 10'000'000;
 
-/// `cells`: the signal at every border of its pieces (for a trilinear ray: of the dual voxels) and at the midpoint of
-/// each piece (El Hajjar 2008, section 3.2). `samples` is overwritten and keeps its memory.
+/// `cells`: the signal at every border of its pieces (for a trilinear ray: of the dual voxels), and inside each piece so
+/// that it is divided into equal intervals: two, at its midpoint (El Hajjar 2008, section 3.2), or more.
+/// `samples` is overwritten and keeps its memory.
 template <int Degree, class Real>
-void sample_cells(const Chain<Degree, Real>& signal, Samples<Real>& samples) {
+void sample_cells(const Chain<Degree, Real>& signal, Samples<Real>& samples, int intervals_per_piece = 2) {
   samples.clear();
   if (signal.pieces.empty()) return;
   for (const auto& piece : signal.pieces) {
     samples.positions.push_back(piece.start);
     samples.values.push_back(piece.polynomial.coefficients.front());
-    samples.positions.push_back(piece.start + Abscissa<Real>(piece.length / Real(2)));
-    samples.values.push_back(piece.polynomial.value(Real(0.5)));
+    for (int i = 1; i < intervals_per_piece; ++i) {
+      const Real u = Real(i) / Real(intervals_per_piece);
+      samples.positions.push_back(piece.start + Abscissa<Real>(u * piece.length));
+      samples.values.push_back(piece.polynomial.value(u));
+    }
   }
   samples.positions.push_back(signal.end);
   samples.values.push_back(signal.pieces.back().polynomial.coefficients.back());

@@ -20,17 +20,22 @@ struct SchemeInfo {
   int order;         ///< xi = O(h^order) where the signal is smooth, sampled at the constant step h
   double error_constant;  ///< xi -> error_constant h^order integral |d^order s / dt^order| dt
   int extra_fetches_per_interval;
+  int parts_per_interval = 1;  ///< of equal length, a cubic each
   std::string_view color;   ///< of its line in plots (palette of Okabe and Ito, safe for the colour-blind)
   std::string_view marker;  ///< of its points, as matplotlib names it
 };
 
-/// A scheme turns samples into an approximate signal: `interval` gives the cubic between sample k and sample k + 1.
-/// The signal is passed for schemes that fetch more of it; they say so in `extra_fetches_per_interval`.
+/// A scheme turns samples into an approximate signal: `interval` gives the cubic between sample k and sample k + 1, or on
+/// one of its `parts_per_interval` parts, if they are more than one. The signal is passed for schemes that fetch more of
+/// it; they say so in `extra_fetches_per_interval`.
 template <class S>
-concept Scheme = requires(const Chain<3>& signal, const Samples<double>& samples, std::size_t k) {
+concept Scheme = requires {
   { S::info } -> std::convertible_to<SchemeInfo>;
+} && (requires(const Chain<3>& signal, const Samples<double>& samples, std::size_t k) {
   { S::interval(signal, samples, k) } -> std::same_as<Bernstein<3>>;
-};
+} || requires(const Chain<3>& signal, const Samples<double>& samples, std::size_t k, int part) {
+  { S::interval(signal, samples, k, part) } -> std::same_as<Bernstein<3>>;
+});
 
 /// Why the scheme cannot use these samples; empty if it can.
 template <Scheme S, class Real>
@@ -47,9 +52,16 @@ template <Scheme S, int Degree, class Real>
 void approximate(const Chain<Degree, Real>& signal, const Samples<Real>& samples, Chain<3, Real>& approximation) {
   approximation.pieces.clear();
   approximation.end = signal.end;
+  constexpr int parts = S::info.parts_per_interval;
   for (std::size_t k = 0; k < samples.interval_count(); ++k)
-    approximation.pieces.push_back(
-        {samples.positions[k], samples.length_of(k), S::interval(signal, samples, k)});
+    if constexpr (parts == 1) {
+      approximation.pieces.push_back({samples.positions[k], samples.length_of(k), S::interval(signal, samples, k)});
+    } else {
+      const Real length = samples.length_of(k) / Real(parts);
+      for (int part = 0; part < parts; ++part)
+        approximation.pieces.push_back({samples.positions[k] + Abscissa<Real>(Real(part) * length), length,
+                                        S::interval(signal, samples, k, part)});
+    }
 }
 
 /// How often the scheme reads the signal: the samples, and what it fetches besides.

@@ -43,7 +43,7 @@ struct VirtualCatmullRom {
     const std::size_t count = samples.interval_count();
     if (count == 0) return 0;
     const Real slack = Real(1e-9) * static_cast<Real>(samples.positions.back());
-    return samples.length_of(count - 1) < *samples.step - slack ? count - 1 : count;
+    return samples.length_of(count - 1) < samples.step.value_or(Real(0)) - slack ? count - 1 : count;
   }
 };
 

@@ -1,10 +1,13 @@
 #include "signals/marschner_lobb.hpp"
 
 #include "core/error.hpp"
+#include "signals/analytic.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace raytruth {
@@ -28,6 +31,27 @@ Grid sampled_marschner_lobb(std::int64_t samples) {
     for (std::int64_t j = 0; j < samples; ++j)
       for (std::int64_t i = 0; i < samples; ++i) grid.values.push_back(marschner_lobb(node(i), node(j), node(k)));
   return grid;
+}
+
+Chain<9> trace_marschner_lobb(const Ray& ray) {
+  const auto direction = unit_direction(ray.direction);
+  if (!(ray.length >= 0)) throw InputError(fmt::format("length {}; numbers >= 0 are allowed", ray.length));
+  double begin = 0;
+  double end = std::numeric_limits<double>::infinity();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (direction[axis] == 0) {
+      if (!(std::abs(ray.origin[axis]) <= 1)) return {};
+      continue;
+    }
+    const double a = (-1 - ray.origin[axis]) / direction[axis];
+    const double b = (1 - ray.origin[axis]) / direction[axis];
+    begin = std::max(begin, std::min(a, b));
+    end = std::min(end, std::max(a, b));
+  }
+  const double length = std::min(end - begin, ray.length);
+  if (!(length > 0)) return {};
+  const auto at = [&](std::size_t axis, double t) { return ray.origin[axis] + (begin + t) * direction[axis]; };
+  return expand([&](double t) { return marschner_lobb(at(0, t), at(1, t), at(2, t)); }, {}, length);
 }
 
 }  // namespace raytruth

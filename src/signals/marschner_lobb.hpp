@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/chain.hpp"
+#include "signals/ray.hpp"
 #include "volume/grid.hpp"
 
 namespace raytruth {
@@ -14,5 +16,9 @@ double marschner_lobb(double x, double y, double z);
 /// The signal at `samples`^3 nodes 2 i / (samples - 1) - 1; 41 in the original. Throws InputError unless
 /// 2 <= samples <= 2048.
 Grid sampled_marschner_lobb(std::int64_t samples);
+
+/// The signal itself along a ray in its own coordinates, cut to [-1, 1]^3, as a chain that meets it to rounding (`expand`);
+/// t = 0 where the ray enters, or at an origin inside. Throws InputError as `trace_trilinear` does.
+Chain<9> trace_marschner_lobb(const Ray& ray);
 
 }  // namespace raytruth

@@ -2,6 +2,9 @@
 
 #include "catalogue.hpp"
 #include "measures/signal_error.hpp"
+#include "signals/analytic.hpp"
+#include "signals/marschner_lobb.hpp"
+#include "signals/tricubic.hpp"
 #include "signals/trilinear.hpp"
 #include "study/read_transfer_function.hpp"
 #include "study/volume_source.hpp"
@@ -58,6 +61,29 @@ Chain<largest_degree> read_piecewise_polynomial(const JsonReader& json) {
   for (const JsonReader& piece : json.at("coefficients").items())
     coefficients.push_back(piece.numbers(largest_degree + 1));
   return json.at("coefficients").blame_for([&] { return piecewise_polynomial(breaks, coefficients); });
+}
+
+/// Its origin, direction and length; the direction is checked.
+Ray read_ray(const JsonReader& json) {
+  Ray ray{.origin = read_vector(json.at("origin")), .direction = read_vector(json.at("direction"))};
+  json.at("direction").blame_for([&ray] { return unit_direction(ray.direction); });
+  if (const auto length = json.find("length")) ray.length = length->number(0);
+  return ray;
+}
+
+Chain<largest_degree> read_marschner_lobb(const JsonReader& json) {
+  json.only({"kind", "origin", "direction", "length"});
+  const Ray ray = read_ray(json);
+  return json.at("origin").blame_for([&] { return trace_marschner_lobb(ray); });
+}
+
+Chain<largest_degree> read_analytic(const JsonReader& json) {
+  json.only({"kind", "name"});
+  std::vector<std::string_view> names;
+  for (const AnalyticSignal& signal : analytic_signals()) names.push_back(signal.name);
+  const std::string name = json.at("name").word(names);
+  return expand(*std::find_if(analytic_signals().begin(), analytic_signals().end(),
+                              [&name](const AnalyticSignal& signal) { return signal.name == name; }));
 }
 
 std::vector<std::string> read_schemes(const JsonReader& json) {
@@ -117,12 +143,20 @@ Json evaluate_scheme(const Chain<Degree>& signal, const Samples<double>& samples
 Case CaseReader::read(const JsonReader& json) {
   json.only({"signal", "transfer_function", "emission", "sampling", "schemes"});
   const JsonReader signal = json.at("signal");
-  const bool is_trilinear = signal.at("kind").word({"piecewise_polynomial", "trilinear"}) == "trilinear";
+  std::vector<std::string_view> kinds;
+  for (const auto& entry : catalogue::signals) kinds.push_back(entry.name);
+  const std::string kind = signal.at("kind").word(kinds);
   Case result{json, {}, read_sampling(json.at("sampling")), read_schemes(json.at("schemes"))};
   if (const auto transfer = json.find("transfer_function")) read_transfer_function(*transfer, warnings_);
   if (const auto emission = json.find("emission")) emission->word({"associated", "plain"});
-  if (is_trilinear)
+  if (kind == "trilinear")
     result.signal = read_trilinear(signal);
+  else if (kind == "tricubic")
+    result.signal = read_tricubic(signal);
+  else if (kind == "marschner_lobb")
+    result.signal = read_marschner_lobb(signal);
+  else if (kind == "analytic")
+    result.signal = read_analytic(signal);
   else
     result.signal = read_piecewise_polynomial(signal);
   std::visit([&signal](const auto& chain) { check_values(signal, chain); }, result.signal);
@@ -131,11 +165,26 @@ Case CaseReader::read(const JsonReader& json) {
 
 Chain<3> CaseReader::read_trilinear(const JsonReader& json) {
   json.only({"kind", "volume", "repair", "origin", "direction", "length"});
-  Ray ray{.origin = read_vector(json.at("origin")), .direction = read_vector(json.at("direction"))};
-  json.at("direction").blame_for([&ray] { return unit_direction(ray.direction); });
-  if (const auto length = json.find("length")) ray.length = length->number(0);
+  const Ray ray = read_ray(json);
   const Grid& grid = read_volume_of(json);
   return json.at("origin").blame_for([&] { return trace_trilinear(grid, ray); });
+}
+
+Chain<largest_degree> CaseReader::read_tricubic(const JsonReader& json) {
+  json.only({"kind", "volume", "repair", "origin", "direction", "length", "kernel", "prefilter"});
+  const Ray ray = read_ray(json);
+  const bool is_bspline = json.at("kernel").word({"bspline", "catmull_rom"}) == "bspline";
+  const auto prefilter = json.find("prefilter");
+  const bool is_prefiltered = prefilter && prefilter->boolean();
+  if (is_prefiltered && !is_bspline) prefilter->refuse_value("false: catmull_rom passes through its voxels as it is;");
+  const Grid& grid = read_volume_of(json);
+  Chain<largest_degree> chain;
+  json.at("origin").blame_for([&] {
+    trace_tricubic(is_prefiltered ? bspline_coefficients(grid) : grid,
+                   is_bspline ? CubicKernel::bspline : CubicKernel::catmull_rom, ray, chain);
+    return 0;
+  });
+  return chain;
 }
 
 const Grid& CaseReader::read_volume_of(const JsonReader& signal) {

@@ -36,6 +36,7 @@ class CaseReader {
 
  private:
   Chain<3> read_trilinear(const JsonReader& json);
+  Chain<largest_degree> read_tricubic(const JsonReader& json);
   const Grid& read_volume_of(const JsonReader& signal);
 
   std::vector<std::filesystem::path> folders_;

@@ -22,9 +22,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// The row with its keys in front, and its status behind where the measure gave it none.
 Row complete_row(std::string_view measure, const std::string& field, Row row, const std::string& why = {}) {
+  const bool has_status = cell(row, "status") != Value();
   Row complete{{"measure", std::string(measure)}, {"field", field.empty() ? Value() : Value(field)}};
   complete.insert(complete.end(), std::make_move_iterator(row.begin()), std::make_move_iterator(row.end()));
+  if (has_status) return complete;
   complete.emplace_back("status", why.empty() ? "ok" : "refused");
   complete.emplace_back("why", why.empty() ? Value() : Value(why));
   return complete;

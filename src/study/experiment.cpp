@@ -22,6 +22,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::int64_t largest_seed = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t most_rays = 100'000'000;
 constexpr std::int64_t largest_generated_size = 2048;
+constexpr std::int64_t most_plot_columns = 8;
 
 template <class Entries>
 std::vector<std::string_view> names_of(const Entries& entries) {
@@ -57,27 +58,36 @@ bool is_lost(Json& value, const std::vector<Json>& lost) {
   return value.empty() && !was_empty;
 }
 
+/// Drops the claims, checks or panels that speak only of rows that are lost: those of `lost` words in `column`.
+void drop_statements(Json& statements, const std::string& column, const std::vector<Json>& lost) {
+  if (!statements.is_array()) return;
+  const auto is_about_lost = [&](Json& statement) {
+    for (const char* const rows : {"row", "rows"})
+      if (statement.is_object() && statement.contains(rows) && statement[rows].is_object() &&
+          statement[rows].contains(column))
+        return is_lost(statement[rows][column], lost);
+    return false;
+  };
+  statements.erase(std::remove_if(statements.begin(), statements.end(), is_about_lost), statements.end());
+}
+
 /// Merges the quick version into the document, and drops what is said about rows that it does not make.
 void merge_quick(Json& document) {
   const Json full = document;
   document.merge_patch(full["quick"]);
+  const bool has_panels = document.contains("plot") && document["plot"].is_object() &&
+                          document["plot"].contains("panels") && !document["plot"]["panels"].empty();
   for (const auto& [column, list, key] :
        {std::tuple{"field", "fields", "name"}, {"scheme", "schemes", ""}, {"measure", "measures", "kind"}}) {
     std::vector<Json> lost = words_in(full, list, key);
     const std::vector<Json> kept = words_in(document, list, key);
     std::erase_if(lost, [&kept](const Json& word) { return std::find(kept.begin(), kept.end(), word) != kept.end(); });
-    for (const char* const statements : {"published", "checks"}) {
-      if (!document.contains(statements) || !document[statements].is_array()) continue;
-      Json& entries = document[statements];
-      const auto is_about_lost = [&, column = column](Json& entry) {
-        for (const char* const rows : {"row", "rows"})
-          if (entry.is_object() && entry.contains(rows) && entry[rows].is_object() && entry[rows].contains(column))
-            return is_lost(entry[rows][column], lost);
-        return false;
-      };
-      entries.erase(std::remove_if(entries.begin(), entries.end(), is_about_lost), entries.end());
-    }
+    if (lost.empty()) continue;
+    for (const char* const statements : {"published", "checks"})
+      if (document.contains(statements)) drop_statements(document[statements], column, lost);
+    if (has_panels) drop_statements(document["plot"]["panels"], column, lost);
   }
+  if (has_panels && document["plot"]["panels"].empty()) document.erase("plot");
 }
 
 void fill_in_defaults(Json& document) {
@@ -125,22 +135,50 @@ void check_field(const JsonReader& json) {
   }
 }
 
+void check_range(const JsonReader& json) {
+  const auto ends = json.items(2);
+  if (ends.size() != 2) json.refuse(fmt::format("{} items", ends.size()), "a pair of numbers");
+  if (!(ends[0].number() < ends[1].number())) ends[1].refuse_value(fmt::format("a number > {}", ends[0].number()));
+}
+
+void check_panel(const JsonReader& json, const RowNames& names) {
+  const std::vector<std::string_view> columns(names.columns.begin(), names.columns.end());
+  const std::string kind = json.at("kind").word({"quantiles", "points", "lines"});
+  read_selector(json.at("rows"), names);
+  json.at("series").word(columns);
+  if (kind == "lines") {
+    json.only({"kind", "rows", "x", "y", "series", "label_x", "label_y", "log_x", "log_y", "x_range", "y_range",
+               "floor"});
+    for (const char* const column : {"x", "y"}) json.at(column).word(columns);
+    for (const char* const label : {"label_x", "label_y"}) json.at(label).text();
+    for (const char* const log : {"log_x", "log_y"})
+      if (const auto found = json.find(log)) found->boolean();
+    for (const char* const range : {"x_range", "y_range"})
+      if (const auto found = json.find(range)) check_range(*found);
+    if (const auto floor = json.find("floor")) floor->number();
+    return;
+  }
+  if (kind == "points") {
+    json.only({"kind", "rows", "value", "low", "high", "group", "series", "printed", "log", "label"});
+    json.at("value").word(columns);
+    for (const char* const end : {"low", "high"})
+      if (const auto column = json.find(end)) column->word(columns);
+  } else {
+    json.only({"kind", "rows", "value", "group", "series", "printed", "log", "label"});
+    json.at("value").text();
+  }
+  json.at("group").word(columns);
+  if (const auto printed = json.find("printed")) printed->word(columns);
+  if (const auto log = json.find("log")) log->boolean();
+  json.at("label").text();
+}
+
 void check_plot(const JsonReader& json, const RowNames& names) {
-  json.only({"title", "note", "panels"});
+  json.only({"title", "note", "columns", "panels"});
   json.at("title").text();
   if (const auto note = json.find("note")) note->text();
-  const std::vector<std::string_view> columns(names.columns.begin(), names.columns.end());
-  for (const JsonReader& panel : json.at("panels").items()) {
-    panel.only({"kind", "rows", "value", "group", "series", "printed", "log", "label"});
-    panel.at("kind").word({"quantiles"});
-    read_selector(panel.at("rows"), names);
-    panel.at("value").text();
-    panel.at("group").word(columns);
-    panel.at("series").word(columns);
-    if (const auto printed = panel.find("printed")) printed->word(columns);
-    if (const auto log = panel.find("log")) log->boolean();
-    panel.at("label").text();
-  }
+  if (const auto columns = json.find("columns")) columns->integer(1, most_plot_columns);
+  for (const JsonReader& panel : json.at("panels").items()) check_panel(panel, names);
 }
 
 std::vector<Claim> read_claims(const JsonReader& json, const RowNames& names) {
@@ -148,7 +186,7 @@ std::vector<Claim> read_claims(const JsonReader& json, const RowNames& names) {
   std::vector<std::string> seen;
   for (const JsonReader& item : json.items(0)) {
     claims.push_back(read_claim(item, names));
-    add_unique(seen, item.at("claim"), claims.back().name);
+    add_unique(seen, item.at("claim"), claims.back().name + "/" + claims.back().part);
   }
   return claims;
 }

@@ -61,8 +61,8 @@ struct Experiment {
 };
 
 /// Reads and checks an experiment. `profile` is "full" or "quick"; "quick" merges the member of that name into the
-/// document (RFC 7396), and leaves out claims and checks about fields, schemes and measures that are no longer in it.
-/// `seed` replaces the document's. Throws InputError.
+/// document (RFC 7396), and leaves out claims, checks and panels about fields, schemes and measures that are no longer
+/// in it. `seed` replaces the document's. Throws InputError.
 Experiment read_experiment(const std::string& path, std::string_view profile, std::optional<std::int64_t> seed);
 
 /// Makes a field, from its generator or its file found in `folders`. Throws VolumeAbsent where no folder holds it.

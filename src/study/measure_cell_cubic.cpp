@@ -56,8 +56,8 @@ RayFindings examine(const Grid& grid, const Ray& ray, std::uint64_t seed, std::u
 
 }  // namespace
 
-std::vector<Column> cell_cubic_columns(const Experiment& /*experiment*/, const JsonReader& json) {
-  json.only({"kind"});
+std::vector<Column> cell_cubic_columns(const Experiment& /*experiment*/, const JsonReader& options) {
+  options.only({"kind"});
   std::vector<Column> columns{
       {.name = "rays", .unit = "", .description = "rays drawn"},
       {.name = "cells", .unit = "", .description = "pieces of all rays, one for each cell crossed"},

@@ -23,14 +23,19 @@ namespace {
 // A ratio of xi is only a number where its denominator is; see the conventions in src/NOTATION.md.
 constexpr double smallest_denominator = 1e-12;
 
-// Rounding of a trilinear signal in [0, 1] and of its approximation, in epsilons: 12 for a coefficient (local
-// coordinates, three interpolations, the mean of three corners), 5 more for a sample, at most 23 more for the
-// approximation's coefficients; 64 leaves room for the sums. tests/unit/signal_error_test.cpp holds it against 50 digits.
-constexpr double signal_radius = 64 * std::numeric_limits<double>::epsilon();
+// xi of two schemes this close to each other, relatively, is a tie.
+constexpr double tie = 1e-12;
+
+/// A published xi.
+struct Printed {
+  std::string scheme;
+  double xi = 0;
+  std::string field;  ///< empty: to be compared with every field
+};
 
 struct Options {
   std::map<std::string, std::string> numerator;  ///< of the ratio shown in the row of the scheme that is the key
-  std::map<std::string, double> printed;         ///< a published xi, by scheme
+  std::vector<Printed> printed;
 };
 
 Options read_options(const Experiment& experiment, const JsonReader& json) {
@@ -53,12 +58,19 @@ Options read_options(const Experiment& experiment, const JsonReader& json) {
         ratio.refuse("a second ratio over " + pair[1].text(), "one ratio for each scheme");
     }
   if (const auto printed = json.find("printed"))
-    for (const auto& [scheme, value] : printed->members()) {
-      if (std::find(schemes.begin(), schemes.end(), scheme) == schemes.end())
-        printed->refuse(scheme, "the experiment's schemes");
-      options.printed[scheme] = value.positive_number();
+    for (const JsonReader& item : printed->items()) {
+      item.only({"scheme", "xi", "field"});
+      const auto field = item.find("field");
+      options.printed.push_back({item.at("scheme").word(schemes), item.at("xi").positive_number(),
+                                 field ? field->text() : std::string()});
     }
   return options;
+}
+
+std::optional<double> find_printed(const Options& options, const std::string& scheme, const std::string& field) {
+  for (const Printed& printed : options.printed)
+    if (printed.scheme == scheme && (printed.field.empty() || printed.field == field)) return printed.xi;
+  return {};
 }
 
 /// Of every ray that is not constant.
@@ -93,13 +105,15 @@ std::map<std::string, Errors> measure_rays(const Experiment& experiment, const S
         sample_constant(signal, *sampling.step, samples);
       else
         sample_cells(signal, samples);
-      for (auto& [name, error] : errors)
-        catalogue::visit_scheme(name, [&]<class S>() {
+      for (auto& entry : errors) {
+        Errors& error = entry.second;
+        catalogue::visit_scheme(entry.first, [&]<class S>() {
           approximate<S>(signal, samples, approximation);
           error.xi[ray] = xi(signal, approximation);
           error.xi_max[ray] = xi_max(signal, approximation);
           error.fetches[ray] = static_cast<double>(fetches<S>(samples));
         });
+      }
     }
   });
   return errors;
@@ -127,6 +141,10 @@ struct Ratios {
   std::vector<double> sorted;
   std::size_t undefined = 0;
   double radius = 0;
+  // Shares of the rays on which the denominator's scheme has the smaller, the larger, the same xi.
+  double better = 0;
+  double worse = 0;
+  double tied = 0;
 };
 
 Ratios measure_ratios(const Errors& numerator, const Errors& denominator, double length) {
@@ -136,6 +154,9 @@ Ratios measure_ratios(const Errors& numerator, const Errors& denominator, double
   const double radius = signal_radius * length;
   for (std::size_t ray = 0; ray < denominator.xi.size(); ++ray) {
     if (std::isnan(denominator.xi[ray])) continue;
+    const double difference = denominator.xi[ray] - numerator.xi[ray];
+    const bool is_tied = std::abs(difference) <= tie * std::max(denominator.xi[ray], numerator.xi[ray]);
+    (is_tied ? ratios.tied : difference < 0 ? ratios.better : ratios.worse) += 1;
     if (denominator.xi[ray] < smallest_denominator * length) {
       ++ratios.undefined;
       continue;
@@ -144,6 +165,8 @@ Ratios measure_ratios(const Errors& numerator, const Errors& denominator, double
     low.push_back((numerator.xi[ray] - radius) / (denominator.xi[ray] + radius));
     high.push_back((numerator.xi[ray] + radius) / (denominator.xi[ray] - radius));
   }
+  const double rays = ratios.better + ratios.worse + ratios.tied;
+  for (double* share : {&ratios.better, &ratios.worse, &ratios.tied}) *share /= std::max(rays, 1.0);
   for (auto* values : {&ratios.sorted, &low, &high}) std::sort(values->begin(), values->end());
   if (ratios.sorted.empty()) return ratios;
   // Quantiles are monotone in every value, so those of the lower and upper ends enclose the true ones.
@@ -157,8 +180,8 @@ Ratios measure_ratios(const Errors& numerator, const Errors& denominator, double
 
 }  // namespace
 
-std::vector<Column> signal_error_columns(const Experiment& experiment, const JsonReader& json) {
-  read_options(experiment, json);
+std::vector<Column> signal_error_columns(const Experiment& experiment, const JsonReader& options) {
+  read_options(experiment, options);
   std::vector<Column> columns{
       {.name = "signal", .unit = "", .description = "reconstruction along the ray", .is_key = true},
       {.name = "sampling", .unit = "", .description = "where samples are taken", .is_key = true},
@@ -185,6 +208,12 @@ std::vector<Column> signal_error_columns(const Experiment& experiment, const Jso
   columns.push_back({.name = "ratio_undefined",
                      .unit = "",
                      .description = "rays left out of the ratio: its denominator is below 1e-12 of range times length"});
+  columns.push_back(
+      {.name = "better_share", .unit = "", .description = "rays on which xi is smaller than that of ratio_of"});
+  columns.push_back(
+      {.name = "worse_share", .unit = "", .description = "rays on which xi is larger than that of ratio_of"});
+  columns.push_back(
+      {.name = "tied_share", .unit = "", .description = "rays on which they differ by at most 1e-12 of themselves"});
   columns.push_back({.name = "ratio_why", .unit = "", .description = "why there is no ratio"});
   columns.push_back({.name = "printed_xi", .unit = "scalar*voxel", .description = "the published figure"});
   columns.push_back({.name = "printed_xi_percentile", .unit = "", .description = "share of rays with a smaller xi"});
@@ -194,8 +223,8 @@ std::vector<Column> signal_error_columns(const Experiment& experiment, const Jso
   return columns;
 }
 
-std::vector<Row> signal_error_rows(const Experiment& experiment, const JsonReader& json, const Field& field) {
-  const Options options = read_options(experiment, json);
+std::vector<Row> signal_error_rows(const Experiment& experiment, const JsonReader& options, const Field& field) {
+  const Options asked = read_options(experiment, options);
   const double length = experiment.rays.length;
   std::vector<Row> rows;
   for (const Sampling& sampling : experiment.samplings) {
@@ -224,24 +253,29 @@ std::vector<Row> signal_error_rows(const Experiment& experiment, const JsonReade
       add_quantiles(row, "xi_max_per_length", sorted_xi_max, 1 / length);
       row.emplace_back("xi_max_per_length_radius", signal_radius / length);
 
-      const auto numerator = options.numerator.find(scheme);
+      const auto numerator = asked.numerator.find(scheme);
       Ratios ratios;
-      if (numerator != options.numerator.end()) {
+      if (numerator != asked.numerator.end()) {
         ratios = measure_ratios(errors.at(numerator->second), error, length);
         row.emplace_back("ratio_of", numerator->second);
         add_quantiles(row, "ratio", ratios.sorted);
         row.emplace_back("ratio_radius", ratios.sorted.empty() ? Value() : Value(ratios.radius));
         row.emplace_back("ratio_undefined", static_cast<std::int64_t>(ratios.undefined));
+        row.emplace_back("better_share", ratios.better);
+        row.emplace_back("worse_share", ratios.worse);
+        row.emplace_back("tied_share", ratios.tied);
         row.emplace_back("ratio_why", ratios.sorted.empty()
                                           ? Value("xi of " + scheme + " is below 1e-12 of range times length on every ray")
                                           : Value());
       }
-      const auto printed = options.printed.find(scheme);
-      if (printed != options.printed.end()) {
-        row.emplace_back("printed_xi", printed->second);
-        row.emplace_back("printed_xi_percentile", percentile(sorted_xi, printed->second));
-        if (numerator != options.numerator.end() && options.printed.contains(numerator->second)) {
-          const double printed_ratio = options.printed.at(numerator->second) / printed->second;
+      if (const auto printed = find_printed(asked, scheme, field.name)) {
+        row.emplace_back("printed_xi", *printed);
+        row.emplace_back("printed_xi_percentile", percentile(sorted_xi, *printed));
+        const auto printed_numerator = numerator == asked.numerator.end()
+                                           ? std::nullopt
+                                           : find_printed(asked, numerator->second, field.name);
+        if (printed_numerator) {
+          const double printed_ratio = *printed_numerator / *printed;
           row.emplace_back("printed_ratio", printed_ratio);
           row.emplace_back("printed_ratio_percentile", percentile(ratios.sorted, printed_ratio));
         }

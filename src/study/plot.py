@@ -1,12 +1,13 @@
 """Draws the plot of one result, from the result alone: plot.py OUTPUT FORMAT RESULT.
 
-The experiment inside the result says what to draw ("plot"); colours, markers and labels of schemes come from its "styles".
-A kind of panel is a function in PANELS.
+The experiment inside the result says what to draw ("plot"); colours and markers of schemes come from its "styles".
+A kind of panel is a function in PANELS: it draws on axes, and returns its height in inches and its groups.
 """
 
 import json
 import os
 import sys
+import textwrap
 
 os.environ.setdefault("SOURCE_DATE_EPOCH", "0")  # the same bytes whenever it is drawn
 
@@ -28,8 +29,17 @@ plt.rcParams.update(
     }
 )
 
-# Below this many radii an error speaks of the reference's rounding, not of the scheme: drawn hollow.
+PANEL_WIDTH = 3.7  # inches
+LEAST_WIDTH = 5.2
+
+# Below this many radii a value speaks of rounding, not of what it measures: drawn hollow.
 MEANINGFUL_RADII = 10
+
+# Series that are no schemes, by order of appearance. Colour-blind readers tell the colours apart (M. Okabe and K. Ito,
+# Color universal design, 2008), grayscale leaves markers and dashes.
+COLORS = ["#0072B2", "#D55E00", "#009E73", "#000000", "#CC79A7", "#56B4E9", "#E69F00"]
+MARKERS = ["o", "s", "^", "D", "v", "P", "X", "<", ">"]
+DASHES = ["-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (6, 1.5, 1.2, 1.5)), (0, (3, 3)), (0, (6, 1, 1.2, 1, 1.2, 1))]
 
 
 def select(rows, selector):
@@ -46,6 +56,10 @@ def distinct(rows, key):
     return list(dict.fromkeys(row[key] for row in rows if row.get(key) is not None))
 
 
+def words(value):
+    return value.replace("_", " ") if isinstance(value, str) else f"{value:g}"
+
+
 def radius_of(result, row, column):
     name = result["columns"].get(column, {}).get("radius")
     return (row.get(name) if name else 0) or 0
@@ -56,94 +70,184 @@ def floor_of(values):
     return min(values) / 3 if values else 1e-16
 
 
-def draw_quantiles(axes, result, panel):
-    """A distribution per row: 5th to 95th percentile thin, 25th to 75th thick, the median a marker.
+def styled_series(result, rows, key):
+    """(name, style) of each series: schemes first, as the catalogue orders and styles them."""
+    present = distinct(rows, key)
+    schemes = [name for name in result["styles"] if name in present]
+    for index, name in enumerate(schemes + [name for name in present if name not in schemes]):
+        own = {"color": COLORS[index % len(COLORS)], "marker": MARKERS[index % len(MARKERS)]}
+        scheme = {part: value for part, value in result["styles"].get(name, {}).items() if part in own}
+        yield name, {**own, **scheme, "linestyle": DASHES[index % len(DASHES)]}
 
-    Groups stand below one another, the series of each side by side. Dashed: the published figure of the series.
+
+def draw_marker(axes, x, y, style, filled):
+    axes.plot(
+        [x],
+        [y],
+        marker=style["marker"],
+        markersize=4,
+        linestyle="none",
+        markerfacecolor=style["color"] if filled else "white",
+        markeredgecolor="black" if filled else style["color"],
+        markeredgewidth=0.4 if filled else 0.8,
+        clip_on=False,
+        zorder=3,
+    )
+
+
+def show_legend(axes, handles):
+    axes.set_axisbelow(True)
+    axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.0), fontsize=7)
+
+
+def draw_groups(axes, result, panel, columns, draw_bars, key_width):
+    """One row of the result beside another: groups below one another, the series of each side by side.
+
+    Of the columns the middle one is the value; draw_bars(values, place, color) draws the others. Dashed: published
+    figures.
     """
-    rows = select(result["rows"], panel["rows"])
-    groups = distinct(rows, panel["group"])
-    series = [name for name in result["styles"] if name in distinct(rows, panel["series"])]
-    percents = ["05", "25", "50", "75", "95"]
-    columns = [f"{panel['value']}_p{percent}" for percent in percents]
+    value = columns[len(columns) // 2]
+    selected = select(result["rows"], panel["rows"])
+    groups = distinct(selected, panel["group"])
+    series = list(styled_series(result, selected, panel["series"]))
+    rows = [row for row in selected if row.get(value) is not None]
 
-    def meaningful(row):
-        values = [row.get(column) for column in columns]
-        return None not in values and values[2] > MEANINGFUL_RADII * radius_of(result, row, columns[2])
+    def is_filled(row):
+        beyond_rounding = abs(row[value]) > MEANINGFUL_RADII * radius_of(result, row, value)
+        return row[value] > 0 and beyond_rounding if panel.get("log") else beyond_rounding or row[value] == 0
 
-    floor = floor_of([row[columns[0]] for row in rows if meaningful(row) and row[columns[0]] > 0])
+    shown = [row.get(column) or 0 for row in rows if is_filled(row) for column in columns]
+    floor = floor_of([value for value in shown if value > 0])
     handles = []
-    for index, name in enumerate(series):
-        style = result["styles"][name]
-        offset = (index - (len(series) - 1) / 2) * 0.8 / max(len(series), 1)
-        printed = None
-        for row in select(rows, {panel["series"]: name}):
+    for index, (name, style) in enumerate(series):
+        offset = (index - (len(series) - 1) / 2) * 0.8 / len(series)
+        own = select(rows, {panel["series"]: name})
+        for row in own:
             place = groups.index(row[panel["group"]]) + offset
             values = [row.get(column) for column in columns]
-            printed = row.get(panel["printed"]) if "printed" in panel else None
-            if None in values:
-                continue
-            filled = meaningful(row)
-            low, quarter, median, three_quarters, high = [max(value, floor) if panel.get("log") else value for value in values]
-            if filled:
-                axes.plot([low, high], [place, place], color=style["color"], linewidth=0.8)
-                axes.plot([quarter, three_quarters], [place, place], color=style["color"], linewidth=2.6)
-            axes.plot(
-                [median],
-                [place],
-                marker=style["marker"],
-                markersize=4,
-                color=style["color"],
-                markerfacecolor=style["color"] if filled else "white",
-                markeredgecolor="black" if filled else style["color"],
-                markeredgewidth=0.4,
-                clip_on=False,
-            )
-        label = name.replace("_", " ")
-        if printed is not None:
-            axes.axvline(printed, color=style["color"], linestyle=(0, (4, 2)), linewidth=0.9, zorder=0)
-            label += f" (published {printed:.4g})"
-        handles.append(
-            Line2D([], [], color=style["color"], marker=style["marker"], markersize=4, linewidth=2.6, label=label)
-        )
+            if panel.get("log"):
+                values = [None if value is None else max(value, floor) for value in values]
+            if is_filled(row):
+                draw_bars(values, place, style["color"])
+            draw_marker(axes, values[len(values) // 2], place, style, is_filled(row))
+        label = words(name)
+        with_printed = [row for row in own if row.get(panel.get("printed")) is not None]
+        printed = {groups.index(row[panel["group"]]): row[panel["printed"]] for row in with_printed}
+        dashed = {"color": style["color"], "linestyle": (0, (4, 2)), "linewidth": 0.9, "zorder": 0}
+        if len(set(printed.values())) == 1:
+            figure = next(iter(printed.values()))
+            axes.axvline(figure, **dashed)
+            label += f" (published {figure:.4g})"
+        else:
+            for group, figure in printed.items():
+                axes.plot([figure, figure], [group - 0.5, group + 0.5], **dashed)
+        key = {"color": style["color"], "marker": style["marker"], "markersize": 4, "linewidth": key_width}
+        handles.append(Line2D([], [], **key, label=label))
 
     if panel.get("log"):
         axes.set_xscale("log")
-    axes.set_yticks(range(len(groups)), [group.replace("_", " ") for group in groups])
+    axes.set_yticks(range(len(groups)), [words(group) for group in groups])
     axes.set_ylim(len(groups) - 0.5, -0.5)
     for border in range(1, len(groups)):
         axes.axhline(border - 0.5, color="0.9", linewidth=0.6, zorder=0)
     axes.grid(axis="x", color="0.93", linewidth=0.6)
-    axes.set_axisbelow(True)
     axes.tick_params(axis="y", length=0)
     axes.set_xlabel(panel["label"])
-    axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.0), fontsize=7)
-    return len(groups) * (0.12 * max(len(series), 1) + 0.1)
+    show_legend(axes, handles)
+    return len(groups) * (0.12 * max(len(series), 1) + 0.1), groups
 
 
-PANELS = {"quantiles": draw_quantiles}
+def draw_quantiles(axes, result, panel):
+    """A distribution per row: 5th to 95th percentile thin, 25th to 75th thick, the median a marker."""
+
+    def draw_bars(values, place, color):
+        axes.plot([values[0], values[4]], [place, place], color=color, linewidth=0.8)
+        axes.plot([values[1], values[3]], [place, place], color=color, linewidth=2.6)
+
+    columns = [f"{panel['value']}_p{percent}" for percent in ("05", "25", "50", "75", "95")]
+    return draw_groups(axes, result, panel, columns, draw_bars, key_width=2.6)
+
+
+def draw_points(axes, result, panel):
+    """A value per row: a marker, with a bar from `low` to `high` where the panel names these columns."""
+
+    def draw_bars(values, place, color):
+        ends = [values[1] if end is None else end for end in (values[0], values[-1])]
+        axes.plot(ends, [place, place], color=color, linewidth=1.2)
+
+    columns = [panel.get("low", panel["value"]), panel["value"], panel.get("high", panel["value"])]
+    return draw_groups(axes, result, panel, columns, draw_bars, key_width=0)
+
+
+def draw_lines(axes, result, panel):
+    """A curve per series. What lies at or below the floor, exact zeros on a log axis too, stands on it, hollow."""
+    x, y = panel["x"], panel["y"]
+    rows = [row for row in select(result["rows"], panel["rows"]) if None not in (row.get(x), row.get(y))]
+    floor = panel.get("floor", -float("inf"))
+    if panel.get("log_y"):
+        floor = max(floor, floor_of([row[y] for row in rows if row[y] > max(floor, 0)]))
+    handles = []
+    for index, (name, style) in enumerate(styled_series(result, rows, panel["series"])):
+        points = sorted((row[x], row[y]) for row in select(rows, {panel["series"]: name}))
+        line = {"color": style["color"], "linestyle": style["linestyle"], "linewidth": 1.1, "marker": style["marker"]}
+        line |= {"markersize": 3.5, "markeredgecolor": "black", "markeredgewidth": 0.4}
+        # Of many points a few carry a marker, each series at places of its own.
+        spacing = len(points) // 12 + 1
+        shown = [(point, max(value, floor)) for point, value in points]
+        axes.plot(*zip(*shown), **line, markevery=(index * spacing // 3 % spacing, spacing))
+        for point, value in points:
+            if value <= floor:
+                draw_marker(axes, point, floor, style, filled=False)
+        handles.append(Line2D([], [], **line, label=words(name)))
+    if panel.get("log_x"):
+        axes.set_xscale("log")
+    if panel.get("log_y"):
+        axes.set_yscale("log")
+    axes.set_xlim(panel.get("x_range"))
+    axes.set_ylim(panel.get("y_range"))
+    axes.grid(color="0.93", linewidth=0.6)
+    axes.set_xlabel(panel["label_x"])
+    axes.set_ylabel(panel["label_y"])
+    show_legend(axes, handles)
+    return 2.4, None
+
+
+PANELS = {"quantiles": draw_quantiles, "points": draw_points, "lines": draw_lines}
 
 
 def refused_rows(result):
-    """One line for each field that could not be measured."""
-    refused = [row for row in result["rows"] if row.get("status") == "refused"]
+    """One line for each field that could not be measured at all."""
+    measured = distinct([row for row in result["rows"] if row.get("status") != "refused"], "field")
+    refused = [row for row in result["rows"] if row.get("field") not in measured and row.get("status") == "refused"]
     return [f"{field}: refused" for field in distinct(refused, "field")]
 
 
 def draw(result):
     plot = result["experiment"]["plot"]
     panels = plot["panels"]
-    figure, all_axes = plt.subplots(1, len(panels), figsize=(3.7 * len(panels), 4), squeeze=False)
-    heights = [PANELS[panel["kind"]](axes, result, panel) for axes, panel in zip(all_axes[0], panels)]
-    labels = [[label.get_text() for label in axes.get_yticklabels()] for axes in all_axes[0]]
-    for axes, own in zip(all_axes[0][1:], labels[1:]):
-        axes.tick_params(labelleft=own != labels[0])
-    figure.set_size_inches(3.7 * len(panels), max(heights) + 1.6)
-    figure.suptitle(plot["title"], fontsize=9)
+    columns = min(plot.get("columns", 2), len(panels))
+    lines = -(-len(panels) // columns)
+    figure, all_axes = plt.subplots(lines, columns, squeeze=False)
+    heights = [0] * lines
+    for place, axes in enumerate(all_axes.flat):
+        line, column = divmod(place, columns)
+        if place >= len(panels):
+            axes.set_visible(False)
+            continue
+        height, groups = PANELS[panels[place]["kind"]](axes, result, panels[place])
+        heights[line] = max(heights[line], height)
+        if column == 0:
+            first_groups = groups
+        elif groups is not None:
+            axes.tick_params(labelleft=groups != first_groups)
+    width = max(PANEL_WIDTH * columns, LEAST_WIDTH)
+    figure.set_size_inches(width, sum(heights) + 1 * lines + 0.6)
+    all_axes[0][0].get_gridspec().set_height_ratios(heights)
+    figure.suptitle(textwrap.fill(plot["title"], int(14 * width)), fontsize=9)
     notes = [plot["note"]] if "note" in plot else []
     notes += ["; ".join(refused_rows(result))] if refused_rows(result) else []
     if notes:
-        figure.supxlabel("\n".join(notes), fontsize=6.5, color="0.3")
+        figure.supxlabel("\n".join(textwrap.fill(note, int(20 * width)) for note in notes), fontsize=6.5, color="0.3")
     figure.tight_layout()
     return figure
 

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -52,9 +53,8 @@ PythonOutcome run_python(const std::string& script, const std::vector<std::strin
 
   std::vector<std::string> words{interpreter, "-B", "-"};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
+  std::vector<char*> pointers(words.size() + 1);  // the last one stays null
+  std::transform(words.begin(), words.end(), pointers.begin(), [](std::string& word) { return word.data(); });
 
   posix_spawn_file_actions_t actions{};
   posix_spawn_file_actions_init(&actions);

@@ -40,13 +40,14 @@ Json published_json(const Experiment& experiment, const std::vector<Row>& rows, 
   Json json = Json::array();
   for (const Claim& claim : experiment.claims) {
     const Verdict verdict = judge(claim, rows, columns);
-    json.push_back({{"claim", claim.name},
-                    {"stated", to_json(claim.stated)},
-                    {"measured", to_json(verdict.measured)},
-                    {"low", to_json(verdict.low)},
-                    {"high", to_json(verdict.high)},
-                    {"verdict", verdict.verdict},
-                    {"why", to_json(verdict.why)}});
+    Json& entry = json.emplace_back(Json{{"claim", claim.name}});
+    if (!claim.part.empty()) entry["part"] = claim.part;
+    entry.update({{"stated", to_json(claim.stated)},
+                  {"measured", to_json(verdict.measured)},
+                  {"low", to_json(verdict.low)},
+                  {"high", to_json(verdict.high)},
+                  {"verdict", verdict.verdict},
+                  {"why", to_json(verdict.why)}});
   }
   return json;
 }
@@ -197,12 +198,14 @@ JsonReader read_result(const std::string& path) {
 
 std::string claims_table(const Json& result) {
   std::vector<std::array<std::string, 4>> table{{"claim", "published", "measured", "verdict"}};
-  for (const Json& claim : result.at("published"))
-    table.push_back({brief(claim.at("claim")), brief(claim.at("stated")),
+  for (const Json& claim : result.at("published")) {
+    const std::string part = claim.contains("part") ? fmt::format(" ({})", brief(claim.at("part"))) : "";
+    table.push_back({brief(claim.at("claim")) + part, brief(claim.at("stated")),
                      claim.at("measured").is_null() ? "-"
                                                     : fmt::format("{} ({} .. {})", brief(claim.at("measured")),
                                                                   brief(claim.at("low")), brief(claim.at("high"))),
                      brief(claim.at("verdict"))});
+  }
   if (table.size() == 1) return {};
   std::array<std::size_t, 4> widths{};
   for (const auto& line : table)

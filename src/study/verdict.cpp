@@ -68,8 +68,9 @@ std::optional<double> radius_of(const std::string& column, const Row& row, const
   return as_number(cell(row, found->radius));
 }
 
-Verdict judge_figure(const Claim& claim, const std::vector<Row>& rows, const std::vector<Column>& columns) {
-  const auto selected = select(rows, *claim.rows);
+Verdict judge_figure(const Claim& claim, const Selector& selector, const std::vector<Row>& rows,
+                     const std::vector<Column>& columns) {
+  const auto selected = select(rows, selector);
   if (selected.size() != 1)
     return not_comparable(fmt::format("{} rows are selected; a figure is compared with one", selected.size()));
   const Row& row = *selected.front();
@@ -115,12 +116,12 @@ double worst(const BoundFindings& findings, const Bound& bound) {
 
 bool holds(double value, const Bound& bound) { return bound.at_least ? value >= bound.limit : value <= bound.limit; }
 
-Verdict judge_sentence(const Claim& claim, const std::vector<Row>& rows) {
-  const auto findings = collect(rows, *claim.rows, claim.test->column);
+Verdict judge_sentence(const Claim& claim, const Selector& selector, const Bound& test, const std::vector<Row>& rows) {
+  const auto findings = collect(rows, selector, test.column);
   if (findings.missing != Value()) return not_comparable(findings.missing);
-  const double measured = worst(findings, *claim.test);
+  const double measured = worst(findings, test);
   return {measured, findings.values.front(), findings.values.back(),
-          holds(measured, *claim.test) ? "reproduced" : "contradicted", stated_why(claim)};
+          holds(measured, test) ? "reproduced" : "contradicted", stated_why(claim)};
 }
 
 }  // namespace
@@ -153,20 +154,21 @@ Claim read_claim(const JsonReader& json, const RowNames& names) {
   else
     claim.stated = stated.text();
   if (const auto why = json.find("why")) claim.why = why->text();
+  if (const auto part = json.find("part")) claim.part = part->text();
   if (stated.is_number() && json.find("row")) {
-    json.only({"claim", "stated", "resolution", "row", "measured", "low", "high", "why"});
+    json.only({"claim", "part", "stated", "resolution", "row", "measured", "low", "high", "why"});
     claim.resolution = json.at("resolution").positive_number();
     claim.rows = read_selector(json.at("row"), names);
     claim.measured = read_column(json.at("measured"), names);
     if (const auto low = json.find("low")) claim.low = read_column(*low, names);
     if (const auto high = json.find("high")) claim.high = read_column(*high, names);
   } else if (stated.is_string() && json.find("rows")) {
-    json.only({"claim", "stated", "rows", "test", "why"});
+    json.only({"claim", "part", "stated", "rows", "test", "why"});
     json.at("test").only({"column", "at_least", "at_most"});
     claim.rows = read_selector(json.at("rows"), names);
     claim.test = read_bound(json.at("test"), names);
   } else {
-    json.only({"claim", "stated", "why"});
+    json.only({"claim", "part", "stated", "why"});
     json.at("why").text();
   }
   return claim;
@@ -179,7 +181,8 @@ Check read_check(const JsonReader& json, const RowNames& names) {
 
 Verdict judge(const Claim& claim, const std::vector<Row>& rows, const std::vector<Column>& columns) {
   if (!claim.rows) return not_comparable(claim.why);
-  return claim.test ? judge_sentence(claim, rows) : judge_figure(claim, rows, columns);
+  if (claim.test) return judge_sentence(claim, *claim.rows, *claim.test, rows);
+  return judge_figure(claim, *claim.rows, rows, columns);
 }
 
 CheckOutcome judge(const Check& check, const std::vector<Row>& rows) {

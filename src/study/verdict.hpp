@@ -26,6 +26,7 @@ struct Bound {
 /// measure and `why` says so.
 struct Claim {
   std::string name;
+  std::string part;  ///< which of several figures of the claim this is; empty: the only one
   Value stated;
   double resolution = 0;
   std::optional<Selector> rows;

@@ -14,7 +14,7 @@ namespace raytruth {
 std::filesystem::path find_sourced_volume(const JsonReader& owner, const std::vector<std::filesystem::path>& folders) {
   const JsonReader place = owner.at("volume");
   const std::string name = place.text();
-  const auto beside = place.resolve(name);
+  auto beside = place.resolve(name);
   std::error_code ignored;
   if (std::filesystem::is_regular_file(beside, ignored)) return beside;
   if (name.find('/') != std::string::npos) throw VolumeAbsent(one_line(name) + ": no such file");

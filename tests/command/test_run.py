@@ -120,6 +120,9 @@ class Results(ProgramTest):
         self.assertEqual([claim["claim"] for claim in quick["published"]], ["sentence", "elsewhere"])
         self.assertEqual(quick["experiment"]["checks"][0]["rows"]["field"], ["smooth"])
         self.assertEqual([check["holds"] for check in quick["checks"]], [True])
+        self.assertIn("plot", quick["experiment"])
+        document = changed(document, "/plot/panels/0/rows/field", "white")
+        self.assertNotIn("plot", self.result("--profile", "quick", document=document)["experiment"])
 
     def test_absent_volume_refuses_its_rows_only(self):
         document = changed(EXPERIMENT, "/fields/2", VOLUME)

@@ -167,7 +167,8 @@ class Validity(ProgramTest):
         for kind, name, place in [("fields", "experiment", "field"), ("measures", "experiment", "measure"),
                                   ("samplings", "experiment", "sampling"), ("samplings", "case", "sampling"), ("signals", "case", "signal")]:
             listed = {entry["name"] for entry in self.json_of("list", kind, "--json")}
-            stated = {option["properties"]["kind"]["const"] for option in SCHEMAS[name]["$defs"][place]["oneOf"]}
+            kinds = [option["properties"]["kind"] for option in SCHEMAS[name]["$defs"][place]["oneOf"]]
+            stated = {word for kind_schema in kinds for word in kind_schema.get("enum", [kind_schema.get("const")])}
             self.assertEqual(stated, listed)
 
 

@@ -1,0 +1,60 @@
+"""`raytruth plot` with matplotlib, and what an experiment may ask of its plot."""
+
+import re
+import unittest
+
+from support import EXPERIMENT, ProgramTest, changed
+from test_schemas import mutations, validator
+
+ROWS = {"rows": {"measure": "signal_error"}, "series": "scheme"}
+POINTS = {"kind": "points", "value": "xi_p50", "low": "xi_p05", "high": "xi_p95", "group": "field", "label": "points of xi", "log": True, **ROWS}
+LINES = {"kind": "lines", "x": "fetches_mean", "y": "xi_p50", "label_x": "fetches", "label_y": "lines of xi", "log_y": True,
+         "x_range": [0, 100], "floor": 1e-9, **ROWS}
+PANELS = changed(EXPERIMENT, "/plot", {"title": "all", "columns": 2, "panels": [*EXPERIMENT["plot"]["panels"], POINTS, LINES]})
+
+# What no schema can say: names of columns and their values, and which of two numbers is greater.
+BEYOND_SCHEMA = re.compile(
+    r"""
+      /plot/panels/\d/(group|series|x|y|low|high)\ =\ "word"
+    | /plot/panels/1/value\ =\ "word"
+    | /plot/panels/\d/rows(\ =\ {"a":\ 1}|/unknown)
+    | /plot/panels/2/x_range/(0\ =\ 1e\+300|1\ =\ -1)
+    """,
+    re.VERBOSE,
+)
+
+
+class Panels(ProgramTest):
+    def drawn(self, document):
+        """The SVG of an experiment's plot."""
+        self.write("small.json", self.json_of("run", self.write("experiment.json", document)))
+        self.output_of("plot", "small.json", "-o", "plots")
+        return (self.folder / "plots/small.svg").read_text()
+
+    def test_every_kind_is_drawn_with_the_same_bytes_again(self):
+        image = self.drawn(PANELS)
+        for text in ("all", "points of xi", "lines of xi", "white", "order0 mid"):
+            self.assertIn(f">{text}</text>", image)
+        self.assertEqual(self.drawn(PANELS), image)
+
+    def test_exact_zeros_stand_hollow_on_the_floor_of_a_log_axis(self):
+        hollow = "fill: #ffffff; stroke: #"
+        zeros = len(EXPERIMENT["fields"]) * len(EXPERIMENT["schemes"])
+        for panel in ({**POINTS, "value": "rays_constant", "low": "rays_constant"}, {**LINES, "y": "rays_constant"}):
+            with self.subTest(kind=panel["kind"]):
+                image = self.drawn(changed(PANELS, "/plot/panels", [panel]))
+                self.assertEqual(len(re.findall(f'<use [^>]*style="{hollow}', image)), zeros)
+
+    def test_schema_and_program_agree_on_panels(self):
+        schema = validator("experiment")
+        for what, document in mutations(PANELS):
+            if not what.startswith("/plot/"):
+                continue
+            with self.subTest(what=what):
+                accepts = self.run_program("run", self.write("experiment.json", document)).returncode == 0
+                verdicts = schema.is_valid(document), accepts
+                self.assertEqual(*((verdicts, (True, False)) if BEYOND_SCHEMA.fullmatch(what) else verdicts))
+
+
+if __name__ == "__main__":
+    unittest.main()
