@@ -214,8 +214,8 @@ JsonReader read_document(const std::string& path, std::string_view profile, std:
 
 }  // namespace
 
-const Measure& measure_of(const JsonReader& json) {
-  const std::string kind = json.at("kind").word(names_of(measures));
+const Measure& measure_of(const JsonReader& options) {
+  const std::string kind = options.at("kind").word(names_of(measures));
   return *std::find_if(measures.begin(), measures.end(),
                        [&kind](const Measure& measure) { return measure.name == kind; });
 }
