@@ -53,7 +53,8 @@ template <class Visit>
 void for_each_scheme(Visit&& visit) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
     (visit.template operator()<std::tuple_element_t<I, Schemes>>(), ...);
-  }(std::make_index_sequence<std::tuple_size_v<Schemes>>{});
+  }
+  (std::make_index_sequence<std::tuple_size_v<Schemes>>{});
 }
 
 /// Calls visit<S>() for the scheme of this name; false if there is none.

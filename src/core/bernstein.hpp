@@ -50,8 +50,8 @@ struct Bernstein {
     return parts;
   }
 
-  /// p on [begin, end], on a unit interval of its own; begin may lie behind end. Coefficient i is the polar form of p at
-  /// n - i times begin and i times end, so its end values are the bits of value(begin) and value(end).
+  /// p on [begin, end], on a unit interval of its own; begin may lie behind end. Coefficient i is the polar form of p
+  /// at n - i times begin and i times end, so its end values are the bits of value(begin) and value(end).
   [[nodiscard]] Bernstein restricted(const Real& begin, const Real& end) const {
     if (begin == Real(0)) return end == Real(1) ? *this : split(end).first;
     if (end == Real(1)) return split(begin).second;
@@ -106,7 +106,9 @@ struct Bernstein {
   }
 
   /// Where p changes sign inside (0, 1), ascending; see `sign_changes`.
-  [[nodiscard]] SignChanges<Real, Degree> sign_changes() const { return raytruth::sign_changes<Real, Degree>(coefficients); }
+  [[nodiscard]] SignChanges<Real, Degree> sign_changes() const {
+    return raytruth::sign_changes<Real, Degree>(coefficients);
+  }
 
   /// Smallest and largest value on [0, 1]: of the end values and of the values where the derivative changes sign.
   [[nodiscard]] std::pair<Real, Real> range() const {

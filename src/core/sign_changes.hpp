@@ -103,8 +103,7 @@ class SignChangeSearch {
   static void halve(Polynomial& p, Polynomial& left) {
     for (std::size_t last = p.degree; last > 0; --last) {
       left.coefficients[p.degree - last] = p.coefficients[0];
-      for (std::size_t i = 0; i < last; ++i)
-        p.coefficients[i] = (p.coefficients[i] + p.coefficients[i + 1]) / Real(2);
+      for (std::size_t i = 0; i < last; ++i) p.coefficients[i] = (p.coefficients[i] + p.coefficients[i + 1]) / Real(2);
     }
     left.coefficients[p.degree] = p.coefficients[0];
   }

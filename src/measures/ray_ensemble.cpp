@@ -19,9 +19,7 @@ Ray random_ray(const Grid& grid, double length, std::uint64_t seed, std::uint64_
     const double height = 2 * turn[0] - 1;
     const double radius = std::sqrt(1 - height * height);
     const double angle = 2 * std::numbers::pi * turn[1];
-    Ray ray{.origin = {},
-            .direction = {radius * std::cos(angle), radius * std::sin(angle), height},
-            .length = length};
+    Ray ray{.origin = {}, .direction = {radius * std::cos(angle), radius * std::sin(angle), height}, .length = length};
     bool inside = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto extent = static_cast<double>(grid.size[axis] - 1);

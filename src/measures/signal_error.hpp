@@ -7,9 +7,9 @@
 
 namespace raytruth {
 
-/// How far rounding moves xi_max, and xi per unit length, of a trilinear ray with values in [0, 1]. In epsilons: 12 for a
-/// coefficient (local coordinates, three interpolations, the mean of three corners), 5 more for a sample, at most 23 more
-/// for the coefficients of an approximation from samples at comparable distances; 64 leaves room for the sums.
+/// How far rounding moves xi_max, and xi per unit length, of a trilinear ray with values in [0, 1]. In epsilons: 12 for
+/// a coefficient (local coordinates, three interpolations, the mean of three corners), 5 more for a sample, at most 23
+/// more for the coefficients of an approximation from samples at comparable distances; 64 leaves room for the sums.
 inline constexpr double signal_radius = 64 * std::numeric_limits<double>::epsilon();
 
 /// xi = integral_0^L |s(t) - s^(t)| dt, in scalar times length (El Hajjar 2008, section 3.2).

@@ -25,9 +25,8 @@ struct Order2 {
     const Real front_length = samples.length_of(front);
     const Real split = front_length / (front_length + samples.length_of(front + 1));
     Rules<Real> rules;
-    return Rules<Real>::cubic(k == front
-                                  ? rules.order2_front(value[front], value[front + 1], value[front + 2], split)
-                                  : rules.order2_back(value[front], value[front + 1], value[front + 2], split));
+    return Rules<Real>::cubic(k == front ? rules.order2_front(value[front], value[front + 1], value[front + 2], split)
+                                         : rules.order2_back(value[front], value[front + 1], value[front + 2], split));
   }
 };
 

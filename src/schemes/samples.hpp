@@ -37,9 +37,9 @@ struct Samples {
 /// More samples than this on one ray are refused.
 inline constexpr std::int64_t largest_sample_count = 10'000'000;
 
-/// `cells`: the signal at every border of its pieces (for a trilinear ray: of the dual voxels), and inside each piece so
-/// that it is divided into equal intervals: two, at its midpoint (El Hajjar 2008, section 3.2), or more.
-/// `samples` is overwritten and keeps its memory.
+/// `cells`: the signal at every border of its pieces (for a trilinear ray: of the dual voxels), and inside each piece
+/// so that it is divided into equal intervals: two, at its midpoint (El Hajjar 2008, section 3.2), or more. `samples`
+/// is overwritten and keeps its memory.
 template <int Degree, class Real>
 void sample_cells(const Chain<Degree, Real>& signal, Samples<Real>& samples, int intervals_per_piece = 2) {
   samples.clear();

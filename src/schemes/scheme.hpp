@@ -16,26 +16,30 @@ struct SchemeInfo {
   std::string_view name;
   std::string_view summary;
   std::string_view source;
-  int exact_degree;  ///< polynomials up to this degree are reproduced, the next degree is not
-  int order;         ///< xi = O(h^order) where the signal is smooth, sampled at the constant step h
+  int exact_degree;       ///< polynomials up to this degree are reproduced, the next degree is not
+  int order;              ///< xi = O(h^order) where the signal is smooth, sampled at the constant step h
   double error_constant;  ///< xi -> error_constant h^order integral |d^order s / dt^order| dt
   int extra_fetches_per_interval;
   int parts_per_interval = 1;  ///< of equal length, a cubic each
-  std::string_view color;   ///< of its line in plots (palette of Okabe and Ito, safe for the colour-blind)
-  std::string_view marker;  ///< of its points, as matplotlib names it
+  std::string_view color;      ///< of its line in plots (palette of Okabe and Ito, safe for the colour-blind)
+  std::string_view marker;     ///< of its points, as matplotlib names it
 };
 
-/// A scheme turns samples into an approximate signal: `interval` gives the cubic between sample k and sample k + 1, or on
-/// one of its `parts_per_interval` parts, if they are more than one. The signal is passed for schemes that fetch more of
-/// it; they say so in `extra_fetches_per_interval`.
 template <class S>
-concept Scheme = requires {
-  { S::info } -> std::convertible_to<SchemeInfo>;
-} && (requires(const Chain<3>& signal, const Samples<double>& samples, std::size_t k) {
+concept GivesIntervals = requires(const Chain<3>& signal, const Samples<double>& samples, std::size_t k) {
   { S::interval(signal, samples, k) } -> std::same_as<Bernstein<3>>;
-} || requires(const Chain<3>& signal, const Samples<double>& samples, std::size_t k, int part) {
+};
+
+template <class S>
+concept GivesParts = requires(const Chain<3>& signal, const Samples<double>& samples, std::size_t k, int part) {
   { S::interval(signal, samples, k, part) } -> std::same_as<Bernstein<3>>;
-});
+};
+
+/// A scheme turns samples into an approximate signal: `interval` gives the cubic between sample k and sample k + 1, or
+/// on one of its `parts_per_interval` parts, if they are more than one. The signal is passed for schemes that fetch
+/// more of it; they say so in `extra_fetches_per_interval`.
+template <class S>
+concept Scheme = std::convertible_to<decltype(S::info), SchemeInfo> &&(GivesIntervals<S> || GivesParts<S>);
 
 /// Why the scheme cannot use these samples; empty if it can.
 template <Scheme S, class Real>
@@ -67,7 +71,8 @@ void approximate(const Chain<Degree, Real>& signal, const Samples<Real>& samples
 /// How often the scheme reads the signal: the samples, and what it fetches besides.
 template <Scheme S, class Real>
 std::int64_t fetches(const Samples<Real>& samples) {
-  return static_cast<std::int64_t>(samples.positions.size() + samples.interval_count() * S::info.extra_fetches_per_interval);
+  return static_cast<std::int64_t>(samples.positions.size() +
+                                   samples.interval_count() * S::info.extra_fetches_per_interval);
 }
 
 }  // namespace raytruth

@@ -28,11 +28,9 @@ struct VirtualCatmullRom {
     if (k >= full || full < 2) return Order1::interval(signal, samples, k);
     const auto& value = samples.values;
     Rules<Real> rules;
-    const Real before =
-        k > 0 ? value[k - 1] : rules.virtual_catmull_rom_ghost(value[0], value[1], value[2]);
-    const Real after = k + 2 <= full
-                           ? value[k + 2]
-                           : rules.virtual_catmull_rom_ghost(value[full], value[full - 1], value[full - 2]);
+    const Real before = k > 0 ? value[k - 1] : rules.virtual_catmull_rom_ghost(value[0], value[1], value[2]);
+    const Real after =
+        k + 2 <= full ? value[k + 2] : rules.virtual_catmull_rom_ghost(value[full], value[full - 1], value[full - 2]);
     return Rules<Real>::cubic(rules.virtual_catmull_rom(before, value[k], value[k + 1], after));
   }
 

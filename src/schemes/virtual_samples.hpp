@@ -45,7 +45,9 @@ struct VirtualSamples {
             .extra_fetches_per_interval = 0,
             .parts_per_interval = Count + 1,
             .color = color,
-            .marker = Count == 1 ? "d" : Count == 3 ? "P" : "X"};
+            .marker = Count == 1   ? "d"
+                      : Count == 3 ? "P"
+                                   : "X"};
   }
 };
 
@@ -69,15 +71,18 @@ struct VirtualLinearSamples : VirtualSamples<Order1, Count> {
 };
 
 struct VirtualCatmullRom1 : VirtualCatmullRomSamples<1> {
-  static constexpr SchemeInfo info = info_of("virtual_catmull_rom_1", "linear, with a virtual Catmull-Rom sample between");
+  static constexpr SchemeInfo info =
+      info_of("virtual_catmull_rom_1", "linear, with a virtual Catmull-Rom sample between");
 };
 
 struct VirtualCatmullRom3 : VirtualCatmullRomSamples<3> {
-  static constexpr SchemeInfo info = info_of("virtual_catmull_rom_3", "linear, with 3 virtual Catmull-Rom samples between");
+  static constexpr SchemeInfo info =
+      info_of("virtual_catmull_rom_3", "linear, with 3 virtual Catmull-Rom samples between");
 };
 
 struct VirtualCatmullRom7 : VirtualCatmullRomSamples<7> {
-  static constexpr SchemeInfo info = info_of("virtual_catmull_rom_7", "linear, with 7 virtual Catmull-Rom samples between");
+  static constexpr SchemeInfo info =
+      info_of("virtual_catmull_rom_7", "linear, with 7 virtual Catmull-Rom samples between");
 };
 
 struct VirtualLinear1 : VirtualLinearSamples<1> {

@@ -2,8 +2,8 @@
 
 #include "core/error.hpp"
 
-#include <Eigen/Dense>
 #include <fmt/format.h>
+#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
@@ -24,8 +24,8 @@ long double chebyshev_point(int i, int count) {
   return (1 - std::cos(std::numbers::pi_v<long double> * (2 * i + 1) / (2 * count))) / 2;
 }
 
-/// From the values at the ten Chebyshev points to Bernstein coefficients: the inverse of B_j(u_i). In extended precision,
-/// since the matrix' condition number is about 10^3.
+/// From the values at the ten Chebyshev points to Bernstein coefficients: the inverse of B_j(u_i). In extended
+/// precision, since the matrix' condition number is about 10^3.
 const Matrix& bernstein_from_values() {
   static const Matrix inverse = [] {
     Matrix matrix;
@@ -33,8 +33,8 @@ const Matrix& bernstein_from_values() {
       const long double u = chebyshev_point(i, degree + 1);
       long double binomial = 1;
       for (int j = 0; j <= degree; ++j) {
-        matrix(i, j) = binomial * std::pow(u, static_cast<long double>(j)) *
-                       std::pow(1 - u, static_cast<long double>(degree - j));
+        matrix(i, j) =
+            binomial * std::pow(u, static_cast<long double>(j)) * std::pow(1 - u, static_cast<long double>(degree - j));
         binomial = binomial * (degree - j) / (j + 1);
       }
     }
@@ -46,7 +46,8 @@ const Matrix& bernstein_from_values() {
 class Expansion {
  public:
   Expansion(const std::function<double(double)>& value, double length) : value_(value), length_(length) {
-    for (int i = 0; i <= 64; ++i) tolerance_ = std::max(tolerance_, expansion_tolerance * std::abs(value(length * i / 64)));
+    for (int i = 0; i <= 64; ++i)
+      tolerance_ = std::max(tolerance_, expansion_tolerance * std::abs(value(length * i / 64)));
   }
 
   void add(double begin, double end) {
@@ -90,19 +91,40 @@ class Expansion {
 
 const std::vector<AnalyticSignal>& analytic_signals() {
   static const std::vector<AnalyticSignal> signals{
-      {"sine_slow", "as smooth as it looks: 16 samples a period at step 1", 16, {0},
+      {"sine_slow",
+       "as smooth as it looks: 16 samples a period at step 1",
+       16,
+       {0},
        [](double t) { return 0.5 + 0.5 * std::sin(2 * pi * t / 16); }},
-      {"sine_near_nyquist", "faithful only below step 1: 2.5 samples a period there", 16, {0},
+      {"sine_near_nyquist",
+       "faithful only below step 1: 2.5 samples a period there",
+       16,
+       {0},
        [](double t) { return 0.5 + 0.5 * std::sin(2 * pi * t / 2.5); }},
-      {"gaussian_wide", "a smooth bump, deviation 2", 16, {0},
+      {"gaussian_wide",
+       "a smooth bump, deviation 2",
+       16,
+       {0},
        [](double t) { return std::exp(-(t - 7.3) * (t - 7.3) / 8); }},
-      {"gaussian_narrow", "a bump that samples at step 1 can miss, deviation 0.2", 16, {0},
+      {"gaussian_narrow",
+       "a bump that samples at step 1 can miss, deviation 0.2",
+       16,
+       {0},
        [](double t) { return std::exp(-(t - 7.3) * (t - 7.3) / 0.08); }},
-      {"chirp_past_nyquist", "a sine whose frequency rises linearly to 1 per unit: no step is fine everywhere", 16, {0},
+      {"chirp_past_nyquist",
+       "a sine whose frequency rises linearly to 1 per unit: no step is fine everywhere",
+       16,
+       {0},
        [](double t) { return 0.5 + 0.5 * std::sin(pi * t * t / 16); }},
-      {"step_between_samples", "a jump from 0 to 1 at 7.3: order 1 at best, whatever the scheme", 16, {7.3},
+      {"step_between_samples",
+       "a jump from 0 to 1 at 7.3: order 1 at best, whatever the scheme",
+       16,
+       {7.3},
        [](double t) { return t < 7.3 ? 0.0 : 1.0; }},
-      {"kink_between_samples", "not as smooth as it looks: a corner at 7.3, as at the border of a cell", 16, {7.3},
+      {"kink_between_samples",
+       "not as smooth as it looks: a corner at 7.3, as at the border of a cell",
+       16,
+       {7.3},
        [](double t) { return std::abs(t - 7.3) / 10; }},
   };
   return signals;

@@ -25,9 +25,9 @@ inline constexpr double expansion_tolerance = 0x1p-44;
 
 /// The signal as a chain of polynomials of degree 9: every stretch between breaks is halved until the interpolating
 /// polynomial through ten Chebyshev points meets the formula, at the eleven points between and around them, to
-/// `expansion_tolerance` of the largest value seen at 65 points. Formulas round t and their phases; a finer tolerance would
-/// chase that noise. Below 2^-20 of the length a stretch is taken as it is.
-/// Throws InputError for a formula that is not finite.
+/// `expansion_tolerance` of the largest value seen at 65 points. Formulas round t and their phases; a finer tolerance
+/// would chase that noise. Below 2^-20 of the length a stretch is taken as it is. Throws InputError for a formula that
+/// is not finite.
 Chain<9> expand(const std::function<double(double)>& value, const std::vector<double>& breaks, double length);
 Chain<9> expand(const AnalyticSignal& signal);
 

@@ -23,9 +23,9 @@ struct alignas(32) Lanes {
   double operator[](std::size_t axis) const { return lane[axis]; }
 };
 
-/// The walk from cell to cell. Cell i of an axis spans the voxel centres i and i + 1; cells -1 and n - 1 are the clamped
-/// halves at the ends. All axes go through the same arithmetic in every step, whichever border is crossed: a branch for
-/// each axis would be mispredicted in every second cell.
+/// The walk from cell to cell. Cell i of an axis spans the voxel centres i and i + 1; cells -1 and n - 1 are the
+/// clamped halves at the ends. All axes go through the same arithmetic in every step, whichever border is crossed: a
+/// branch for each axis would be mispredicted in every second cell.
 class CellWalk {
  public:
   CellWalk(const std::array<std::int64_t, 3>& size, const std::array<double, 3>& origin,
@@ -55,8 +55,8 @@ class CellWalk {
     return first;
   }
 
-  /// Ends the current piece at t: on the border of the axes whose crossing is not later by more than `tolerance`, at the
-  /// coordinate inside the cell, local_start + t direction, clamped against rounding, of the others. The sum is not
+  /// Ends the current piece at t: on the border of the axes whose crossing is not later by more than `tolerance`, at
+  /// the coordinate inside the cell, local_start + t direction, clamped against rounding, of the others. The sum is not
   /// normalised on the way, its terms being added from the smallest: all that is wanted is the nearest binary64 number.
   void finish(const DoubleDouble& t, double tolerance) {
     for (std::size_t axis = 0; axis < 4; ++axis) {
@@ -98,8 +98,7 @@ class CellWalk {
       local_low_[axis] = local_start.low;
       const DoubleDouble distance = two_sum(exit_[axis], -local_start.high);
       const double quotient = distance.high * inverse_[axis];
-      const double remainder =
-          std::fma(-quotient, direction_[axis], distance.high) + (distance.low - local_start.low);
+      const double remainder = std::fma(-quotient, direction_[axis], distance.high) + (distance.low - local_start.low);
       const DoubleDouble crossing = fast_two_sum(quotient, remainder * inverse_[axis]);
       crossing_high_[axis] = moves_[axis] != 0 ? crossing.high : std::numeric_limits<double>::infinity();
       crossing_low_[axis] = moves_[axis] != 0 ? crossing.low : 0;
@@ -110,8 +109,8 @@ class CellWalk {
   Lanes local_high_, local_low_, crossing_high_, crossing_low_, crosses_, begin_, end_;
 };
 
-/// The stretch of the line origin + t direction inside [-1/2, size - 1/2] on every axis; none where its end is not behind
-/// its begin.
+/// The stretch of the line origin + t direction inside [-1/2, size - 1/2] on every axis; none where its end is not
+/// behind its begin.
 struct Stretch {
   DoubleDouble begin;
   DoubleDouble end = std::numeric_limits<double>::infinity();
@@ -119,11 +118,11 @@ struct Stretch {
 Stretch clip(const std::array<std::int64_t, 3>& size, const std::array<double, 3>& origin,
              const std::array<double, 3>& direction);
 
-/// The chain along a ray through a grid: `cell_polynomial(walk)` gives the signal on the segment through the walk's current
-/// cell. The ray is clipped to the clamped field, and t = 0 where it enters, or at an origin inside; a miss is the chain
-/// without pieces. `chain` is overwritten and keeps its memory.
-/// Throws InputError for a bad direction, a negative length, or an origin farther than 2^40 voxels: from there, 106 bits
-/// would no longer give cell-local coordinates to the last bit.
+/// The chain along a ray through a grid: `cell_polynomial(walk)` gives the signal on the segment through the walk's
+/// current cell. The ray is clipped to the clamped field, and t = 0 where it enters, or at an origin inside; a miss is
+/// the chain without pieces. `chain` is overwritten and keeps its memory. Throws InputError for a bad direction, a
+/// negative length, or an origin farther than 2^40 voxels: from there, 106 bits would no longer give cell-local
+/// coordinates to the last bit.
 template <int Degree, class CellPolynomial>
 void trace_cells(const std::array<std::int64_t, 3>& size, const Ray& ray, Chain<Degree>& chain,
                  CellPolynomial&& cell_polynomial) {

@@ -17,8 +17,8 @@ double marschner_lobb(double x, double y, double z);
 /// 2 <= samples <= 2048.
 Grid sampled_marschner_lobb(std::int64_t samples);
 
-/// The signal itself along a ray in its own coordinates, cut to [-1, 1]^3, as a chain that meets it to rounding (`expand`);
-/// t = 0 where the ray enters, or at an origin inside. Throws InputError as `trace_trilinear` does.
+/// The signal itself along a ray in its own coordinates, cut to [-1, 1]^3, as a chain that meets it to rounding
+/// (`expand`); t = 0 where the ray enters, or at an origin inside. Throws InputError as `trace_trilinear` does.
 Chain<9> trace_marschner_lobb(const Ray& ray);
 
 }  // namespace raytruth

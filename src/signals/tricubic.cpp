@@ -17,33 +17,52 @@ using Tensor = std::array<double, 64>;  ///< index 16 k + 4 j + i
 constexpr std::array<double, 4> binomial_3{1, 3, 3, 1};
 constexpr std::array<double, 10> binomial_9{1, 9, 36, 84, 126, 126, 84, 36, 9, 1};
 
+/// From the Bernstein coefficients of a cubic on [0, 1] to those on its part [p, q], as [row][column]: row r holds the
+/// weights of the polar form at 3 - r times p and r times q, all of them positive.
+Matrix restriction(double p, double q) {
+  const auto polar = [](double a, double b, double c) {
+    const double a1 = 1 - a;
+    const double b1 = 1 - b;
+    const double c1 = 1 - c;
+    return std::array{a1 * b1 * c1, a * b1 * c1 + a1 * b * c1 + a1 * b1 * c, a * b * c1 + a * b1 * c + a1 * b * c,
+                      a * b * c};
+  };
+  return {polar(p, p, p), polar(p, p, q), polar(p, q, q), polar(q, q, q)};
+}
+
 /// From the four voxels around a cell to the Bernstein coefficients on its part [begin, end]: [coefficient][voxel].
-Matrix cell_matrix(CubicKernel kernel, double begin, double end) {
+Matrix cell_matrix(const Matrix& kernel, double begin, double end) {
+  const Matrix part = restriction(begin, end);
   Matrix matrix{};
-  for (std::size_t voxel = 0; voxel < 4; ++voxel) {
-    Bernstein<3> cubic;
-    for (std::size_t i = 0; i < 4; ++i) cubic.coefficients[i] = kernel_coefficient<double>(kernel, i, voxel);
-    const auto part = cubic.restricted(begin, end);
-    for (std::size_t i = 0; i < 4; ++i) matrix[i][voxel] = part.coefficients[i];
-  }
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t k = 0; k < 4; ++k)
+      for (std::size_t voxel = 0; voxel < 4; ++voxel) matrix[i][voxel] += part[i][k] * kernel[k][voxel];
   return matrix;
 }
 
-/// The matrix applied along the axis of the lowest index, which becomes the highest: three turns visit all axes and
-/// restore the order.
-Tensor turn(const Tensor& tensor, const Matrix& matrix) {
-  Tensor result{};
+/// Voxels to Bernstein coefficients along each axis in turn; the innermost loops run over what lies side by side.
+Tensor contract(const Tensor& voxels, const Matrix& x, const Matrix& y, const Matrix& z) {
+  Tensor by_z{};
+  for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t voxel = 0; voxel < 4; ++voxel)
+      for (std::size_t rest = 0; rest < 16; ++rest) by_z[16 * k + rest] += z[k][voxel] * voxels[16 * voxel + rest];
+  Tensor by_y{};
+  for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t j = 0; j < 4; ++j)
+      for (std::size_t voxel = 0; voxel < 4; ++voxel)
+        for (std::size_t i = 0; i < 4; ++i) by_y[16 * k + 4 * j + i] += y[j][voxel] * by_z[16 * k + 4 * voxel + i];
+  Matrix x_by_voxel{};
   for (std::size_t i = 0; i < 4; ++i)
-    for (std::size_t rest = 0; rest < 16; ++rest) {
-      double sum = 0;
-      for (std::size_t voxel = 0; voxel < 4; ++voxel) sum += matrix[i][voxel] * tensor[4 * rest + voxel];
-      result[16 * i + rest] = sum;
-    }
+    for (std::size_t voxel = 0; voxel < 4; ++voxel) x_by_voxel[voxel][i] = x[i][voxel];
+  Tensor result{};
+  for (std::size_t row = 0; row < 16; ++row)
+    for (std::size_t voxel = 0; voxel < 4; ++voxel)
+      for (std::size_t i = 0; i < 4; ++i) result[4 * row + i] += x_by_voxel[voxel][i] * by_y[4 * row + voxel];
   return result;
 }
 
 /// The polynomial on the segment through the current cell; see the header for the formula.
-Bernstein<9> cell_polynomial(const Grid& grid, CubicKernel kernel, const CellWalk& walk) {
+Bernstein<9> cell_polynomial(const Grid& grid, const Matrix& kernel, const CellWalk& walk) {
   std::array<std::array<std::int64_t, 4>, 3> offset{};
   std::int64_t stride = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -52,14 +71,14 @@ Bernstein<9> cell_polynomial(const Grid& grid, CubicKernel kernel, const CellWal
           std::clamp(walk.cell(axis) - 1 + voxel, std::int64_t{0}, grid.size[axis] - 1) * stride;
     stride *= grid.size[axis];
   }
-  Tensor tensor{};
+  Tensor voxels{};
   for (std::size_t k = 0; k < 4; ++k)
     for (std::size_t j = 0; j < 4; ++j) {
       const double* const row = grid.values.data() + offset[2][k] + offset[1][j];
-      for (std::size_t i = 0; i < 4; ++i) tensor[16 * k + 4 * j + i] = row[offset[0][i]];
+      for (std::size_t i = 0; i < 4; ++i) voxels[16 * k + 4 * j + i] = row[offset[0][i]];
     }
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    tensor = turn(tensor, cell_matrix(kernel, walk.begin(axis), walk.end(axis)));
+  const auto matrix = [&](std::size_t axis) { return cell_matrix(kernel, walk.begin(axis), walk.end(axis)); };
+  const Tensor tensor = contract(voxels, matrix(0), matrix(1), matrix(2));
 
   Bernstein<9> polynomial;
   for (std::size_t k = 0; k < 4; ++k)
@@ -91,8 +110,10 @@ void prefilter_line(double* values, std::int64_t count, std::int64_t stride, std
 
 RAYTRUTH_DISPATCH
 void trace_tricubic(const Grid& grid, CubicKernel kernel, const Ray& ray, Chain<9>& chain) {
-  trace_cells(grid.size, ray, chain,
-              [&grid, kernel](const CellWalk& walk) { return cell_polynomial(grid, kernel, walk); });
+  Matrix matrix{};
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t voxel = 0; voxel < 4; ++voxel) matrix[i][voxel] = kernel_coefficient<double>(kernel, i, voxel);
+  trace_cells(grid.size, ray, chain, [&](const CellWalk& walk) { return cell_polynomial(grid, matrix, walk); });
 }
 
 Grid bspline_coefficients(const Grid& grid) {

@@ -25,8 +25,8 @@ Real kernel_coefficient(CubicKernel kernel, std::size_t coefficient, std::size_t
   return Real((kernel == CubicKernel::bspline ? bspline : catmull_rom)[coefficient][voxel]) / Real(6);
 }
 
-/// The scalar along a ray through a tricubic reconstruction, exactly: a chain of polynomials of degree 9 with a break at
-/// every border of a dual voxel.
+/// The scalar along a ray through a tricubic reconstruction, exactly: a chain of polynomials of degree 9 with a break
+/// at every border of a dual voxel.
 ///
 /// On the box [p, q] that the ray's segment spans in a cell, the reconstruction is a tensor product of cubics with
 /// Bernstein coefficients b_ijk, made axis by axis from the 4^3 voxels around the cell. On the box's diagonal the
@@ -36,9 +36,9 @@ Real kernel_coefficient(CubicKernel kernel, std::size_t coefficient, std::size_t
 /// `trace_trilinear`; for an interpolating B-spline pass the grid of `bspline_coefficients`.
 void trace_tricubic(const Grid& grid, CubicKernel kernel, const Ray& ray, Chain<9>& chain);
 
-/// The coefficients of the cubic B-spline that passes through the voxels of a clamped grid: on every line the tridiagonal
-/// system (c_{i-1} + 4 c_i + c_{i+1}) / 6 = v_i with c_{-1} = c_0, c_n = c_{n-1}, axis after axis (M. Unser, Splines: a
-/// perfect fit for signal and image processing, 1999).
+/// The coefficients of the cubic B-spline that passes through the voxels of a clamped grid: on every line the
+/// tridiagonal system (c_{i-1} + 4 c_i + c_{i+1}) / 6 = v_i with c_{-1} = c_0, c_n = c_{n-1}, axis after axis (M.
+/// Unser, Splines: a perfect fit for signal and image processing, 1999).
 Grid bspline_coefficients(const Grid& grid);
 
 }  // namespace raytruth

@@ -19,8 +19,8 @@ namespace raytruth {
 /// rounded unit direction, to a few ulps of the largest voxel involved, at any distance; neighbouring pieces share
 /// the bits of the value at their common border.
 ///
-/// The field is clamped (as GL_CLAMP_TO_EDGE) and ends at [-1/2, n - 1/2] on every axis; how the ray is clipped to it, and
-/// what is refused (InputError), stands at `trace_cells`. `chain` is overwritten and keeps its memory.
+/// The field is clamped (as GL_CLAMP_TO_EDGE) and ends at [-1/2, n - 1/2] on every axis; how the ray is clipped to it,
+/// and what is refused (InputError), stands at `trace_cells`. `chain` is overwritten and keeps its memory.
 void trace_trilinear(const Grid& grid, const Ray& ray, Chain<3>& chain);
 
 /// The same as a new chain.

@@ -147,8 +147,8 @@ void check_panel(const JsonReader& json, const RowNames& names) {
   read_selector(json.at("rows"), names);
   json.at("series").word(columns);
   if (kind == "lines") {
-    json.only({"kind", "rows", "x", "y", "series", "label_x", "label_y", "log_x", "log_y", "x_range", "y_range",
-               "floor"});
+    json.only(
+        {"kind", "rows", "x", "y", "series", "label_x", "label_y", "log_x", "log_y", "x_range", "y_range", "floor"});
     for (const char* const column : {"x", "y"}) json.at(column).word(columns);
     for (const char* const label : {"label_x", "label_y"}) json.at(label).text();
     for (const char* const log : {"log_x", "log_y"})

@@ -18,7 +18,8 @@ struct Measure {
   bool of_fields;
   /// The columns of its rows besides `measure`, `field`, `status` and `why`. Refuses options it does not know.
   std::vector<Column> (*columns)(const Experiment&, const JsonReader& options);
-  /// The rows of a field, without `measure` and `field`; without `status` and `why` unless refused; the same bytes on any number of threads.
+  /// The rows of a field, without `measure` and `field`; without `status` and `why` unless refused; the same bytes on
+  /// any number of threads.
   std::vector<Row> (*rows)(const Experiment&, const JsonReader& options, const Field&);
 };
 
@@ -56,8 +57,8 @@ inline constexpr std::array measures{
             virtual_samples_columns, virtual_samples_rows},
     Measure{"frequency_response", "Fourier transforms of the B-spline and of virtual samples, closed form and measured",
             false, frequency_response_columns, frequency_response_rows},
-    Measure{"minmax_bounds", "how far virtual samples leave the range of their data and of the block they lie in", false,
-            minmax_bounds_columns, minmax_bounds_rows},
+    Measure{"minmax_bounds", "how far virtual samples leave the range of their data and of the block they lie in",
+            false, minmax_bounds_columns, minmax_bounds_rows},
 };
 
 /// The measure that an item of an experiment's "measures" names. Throws InputError.

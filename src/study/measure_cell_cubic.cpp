@@ -65,7 +65,9 @@ std::vector<Column> cell_cubic_columns(const Experiment& /*experiment*/, const J
        .unit = "scalar",
        .description = "largest deviation of the cubic from the eight voxels' value in 50 digits, at a random point of "
                       "every cell; the field has range 1"},
-      {.name = "cubic_term_max", .unit = "scalar", .description = "largest coefficient of u^3, u = 0 ... 1 in the cell"},
+      {.name = "cubic_term_max",
+       .unit = "scalar",
+       .description = "largest coefficient of u^3, u = 0 ... 1 in the cell"},
       {.name = "value_jump_max", .unit = "scalar", .description = "largest jump of the value between two cells"},
   };
   const auto jumps = quantile_columns("slope_jump", "scalar/voxel", "jump of the slope between two cells");
@@ -95,9 +97,8 @@ std::vector<Row> cell_cubic_rows(const Experiment& experiment, const JsonReader&
           {"cells", all.cells},
           {"value_error_max", all.value_error},
           {"cubic_term_max", all.cubic_term},
-          {"value_jump_max", all.value_jumps.empty()
-                                 ? 0.0
-                                 : *std::max_element(all.value_jumps.begin(), all.value_jumps.end())}};
+          {"value_jump_max",
+           all.value_jumps.empty() ? 0.0 : *std::max_element(all.value_jumps.begin(), all.value_jumps.end())}};
   add_quantiles(row, "slope_jump", all.slope_jumps);
   return {row};
 }

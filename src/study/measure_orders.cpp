@@ -102,18 +102,23 @@ std::vector<Column> orders_columns(const Experiment& experiment, const JsonReade
   };
   for (const auto& [name, unit] : {std::pair{"xi", "scalar*voxel"}, {"xi_max", "scalar"}}) {
     const std::string symbol = name;
-    columns.push_back({.name = symbol + "_mean", .unit = unit, .description = symbol + ", mean over rays",
-                       .is_key = false, .radius = symbol + "_mean_radius"});
+    columns.push_back({.name = symbol + "_mean",
+                       .unit = unit,
+                       .description = symbol + ", mean over rays",
+                       .is_key = false,
+                       .radius = symbol + "_mean_radius"});
     columns.push_back({.name = symbol + "_mean_radius", .unit = unit, .description = "bound on its rounding error"});
-    columns.push_back({.name = "order_" + symbol,
-                       .unit = "",
-                       .description = fmt::format("slope of log {} mean over log step, least squares over steps 2^-{} to "
-                                                  "2^-{}, without points within {} radii",
-                                                  symbol, coarsest, finest, meaningful_radii)});
+    columns.push_back(
+        {.name = "order_" + symbol,
+         .unit = "",
+         .description = fmt::format("slope of log {} mean over log step, least squares over steps 2^-{} to "
+                                    "2^-{}, without points within {} radii",
+                                    symbol, coarsest, finest, meaningful_radii)});
     columns.push_back({.name = "order_" + symbol + "_residual",
                        .unit = "",
                        .description = "root mean square of log2 of the means about the line"});
-    columns.push_back({.name = "order_" + symbol + "_finest", .unit = "cell or voxel", .description = "least step in the fit"});
+    columns.push_back(
+        {.name = "order_" + symbol + "_finest", .unit = "cell or voxel", .description = "least step in the fit"});
   }
   return columns;
 }

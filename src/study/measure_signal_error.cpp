@@ -61,8 +61,8 @@ Options read_options(const Experiment& experiment, const JsonReader& json) {
     for (const JsonReader& item : printed->items()) {
       item.only({"scheme", "xi", "field"});
       const auto field = item.find("field");
-      options.printed.push_back({item.at("scheme").word(schemes), item.at("xi").positive_number(),
-                                 field ? field->text() : std::string()});
+      options.printed.push_back(
+          {item.at("scheme").word(schemes), item.at("xi").positive_number(), field ? field->text() : std::string()});
     }
   return options;
 }
@@ -172,8 +172,8 @@ Ratios measure_ratios(const Errors& numerator, const Errors& denominator, double
   // Quantiles are monotone in every value, so those of the lower and upper ends enclose the true ones.
   for (const int percent : shown_percents) {
     const double value = quantile(ratios.sorted, percent / 100.0);
-    ratios.radius = std::max({ratios.radius, value - quantile(low, percent / 100.0),
-                              quantile(high, percent / 100.0) - value});
+    ratios.radius =
+        std::max({ratios.radius, value - quantile(low, percent / 100.0), quantile(high, percent / 100.0) - value});
   }
   return ratios;
 }
@@ -205,9 +205,10 @@ std::vector<Column> signal_error_columns(const Experiment& experiment, const Jso
   add("xi_max_per_length", "scalar/voxel", "xi_max over the ray's length");
   columns.push_back({.name = "ratio_of", .unit = "", .description = "the scheme whose xi is divided by this one's"});
   add("ratio", "", "xi of the scheme ratio_of over xi of this scheme");
-  columns.push_back({.name = "ratio_undefined",
-                     .unit = "",
-                     .description = "rays left out of the ratio: its denominator is below 1e-12 of range times length"});
+  columns.push_back(
+      {.name = "ratio_undefined",
+       .unit = "",
+       .description = "rays left out of the ratio: its denominator is below 1e-12 of range times length"});
   columns.push_back(
       {.name = "better_share", .unit = "", .description = "rays on which xi is smaller than that of ratio_of"});
   columns.push_back(
@@ -264,16 +265,16 @@ std::vector<Row> signal_error_rows(const Experiment& experiment, const JsonReade
         row.emplace_back("better_share", ratios.better);
         row.emplace_back("worse_share", ratios.worse);
         row.emplace_back("tied_share", ratios.tied);
-        row.emplace_back("ratio_why", ratios.sorted.empty()
-                                          ? Value("xi of " + scheme + " is below 1e-12 of range times length on every ray")
-                                          : Value());
+        row.emplace_back("ratio_why",
+                         ratios.sorted.empty()
+                             ? Value("xi of " + scheme + " is below 1e-12 of range times length on every ray")
+                             : Value());
       }
       if (const auto printed = find_printed(asked, scheme, field.name)) {
         row.emplace_back("printed_xi", *printed);
         row.emplace_back("printed_xi_percentile", percentile(sorted_xi, *printed));
-        const auto printed_numerator = numerator == asked.numerator.end()
-                                           ? std::nullopt
-                                           : find_printed(asked, numerator->second, field.name);
+        const auto printed_numerator =
+            numerator == asked.numerator.end() ? std::nullopt : find_printed(asked, numerator->second, field.name);
         if (printed_numerator) {
           const double printed_ratio = *printed_numerator / *printed;
           row.emplace_back("printed_ratio", printed_ratio);

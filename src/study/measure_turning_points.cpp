@@ -26,7 +26,9 @@ std::vector<Column> turning_points_columns(const Experiment& /*experiment*/, con
   options.only({"kind"});
   return {
       {.name = "rays", .unit = "", .description = "rays drawn"},
-      {.name = "cells", .unit = "", .description = "cells crossed from border to border; the ends of rays are left out"},
+      {.name = "cells",
+       .unit = "",
+       .description = "cells crossed from border to border; the ends of rays are left out"},
       {.name = "cells_constant", .unit = "", .description = "of these, cells with a constant signal"},
       {.name = "one_turning_point", .unit = "", .description = "cells in which the slope changes sign once"},
       {.name = "two_turning_points", .unit = "", .description = "cells in which the slope changes sign twice"},

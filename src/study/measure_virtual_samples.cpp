@@ -27,8 +27,9 @@ constexpr double peak = 1;
 // A ray is constant if its signal changes by less than this part of the field's range.
 constexpr double smallest_change = 1e-12;
 
-// Rounding of an error, in epsilons of the largest coefficient: 8 for the truth (tests/unit/tricubic_test.cpp), the rest
-// for the samples, their cubic and their difference. tests/unit/virtual_samples_test.cpp holds it against 50 digits.
+// Rounding of an error, in epsilons of the largest coefficient: 8 for the truth (tests/unit/tricubic_test.cpp), the
+// rest for the samples, their cubic and their difference. tests/unit/virtual_samples_test.cpp holds it against 50
+// digits.
 constexpr double error_radius = 64 * std::numeric_limits<double>::epsilon();
 
 /// A ray's exact signals, and their samples a voxel apart.
@@ -188,8 +189,7 @@ void add_figures(Row& row, const SampleError& error, const SampleError& virtual_
   const double least = virtual_3.rmse().value_or(0);
   const bool has_ratio = has_psnr && least > radius;
   row.emplace_back("rmse_ratio", number_if(has_ratio, rmse / least));
-  row.emplace_back("rmse_ratio_radius",
-                   number_if(has_ratio, (rmse + least) * radius / (least * (least - radius))));
+  row.emplace_back("rmse_ratio_radius", number_if(has_ratio, (rmse + least) * radius / (least * (least - radius))));
 }
 
 }  // namespace
@@ -199,7 +199,8 @@ std::vector<Column> virtual_samples_columns(const Experiment& /*experiment*/, co
   return {
       {.name = "reconstruction",
        .unit = "",
-       .description = "what Cubic and the truth are: the cubic B-spline of the voxels (raw), or through them (prefiltered)",
+       .description =
+           "what Cubic and the truth are: the cubic B-spline of the voxels (raw), or through them (prefiltered)",
        .is_key = true},
       {.name = "method",
        .unit = "",
@@ -216,8 +217,16 @@ std::vector<Column> virtual_samples_columns(const Experiment& /*experiment*/, co
       {.name = "rays", .unit = "", .description = "rays drawn"},
       {.name = "rays_constant", .unit = "", .description = "of these, rays whose raw spline is constant, left out"},
       {.name = "samples", .unit = "", .description = "samples compared, of all other rays"},
-      {.name = "rmse", .unit = "scalar", .description = "root mean square error", .is_key = false, .radius = "error_radius"},
-      {.name = "error_max", .unit = "scalar", .description = "largest error", .is_key = false, .radius = "error_radius"},
+      {.name = "rmse",
+       .unit = "scalar",
+       .description = "root mean square error",
+       .is_key = false,
+       .radius = "error_radius"},
+      {.name = "error_max",
+       .unit = "scalar",
+       .description = "largest error",
+       .is_key = false,
+       .radius = "error_radius"},
       {.name = "error_radius", .unit = "scalar", .description = "bound of the rounding error of rmse and error_max"},
       {.name = "peak", .unit = "scalar", .description = "the peak of psnr: the range of the data, scaled"},
       {.name = "psnr", .unit = "dB", .description = "20 log10(peak / rmse)", .is_key = false, .radius = "psnr_radius"},

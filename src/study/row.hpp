@@ -19,8 +19,8 @@ struct Column {
   std::string name;
   std::string unit;  ///< empty for words and counts
   std::string description;
-  bool is_key = false;       ///< the row's identity: rows of two results correspond where their keys agree
-  std::string radius = {};   ///< the column that holds this one's radius; empty: exact
+  bool is_key = false;      ///< the row's identity: rows of two results correspond where their keys agree
+  std::string radius = {};  ///< the column that holds this one's radius; empty: exact
 };
 
 }  // namespace raytruth

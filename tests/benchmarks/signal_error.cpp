@@ -1,8 +1,8 @@
 // The exact walk, exact xi against the papers' way of computing it, and two threads against one.
 
+#include "measures/signal_error.hpp"
 #include "catalogue.hpp"
 #include "measures/ray_ensemble.hpp"
-#include "measures/signal_error.hpp"
 #include "paired.hpp"
 #include "signals/random_field.hpp"
 #include "signals/trilinear.hpp"
@@ -49,9 +49,9 @@ void exact_walk_against_samples(benchmark::State& state) {
         double sum = 0;
         for (const Ray& ray : rays)
           for (int t = 0; t < 30; ++t)
-            sum += trilinear_value<double>(grid, {ray.origin[0] + t * ray.direction[0],
-                                                  ray.origin[1] + t * ray.direction[1],
-                                                  ray.origin[2] + t * ray.direction[2]});
+            sum += trilinear_value<double>(grid,
+                                           {ray.origin[0] + t * ray.direction[0], ray.origin[1] + t * ray.direction[1],
+                                            ray.origin[2] + t * ray.direction[2]});
         return sum;
       });
   const double seconds = state.counters["subject_seconds"];
@@ -87,8 +87,8 @@ double xi_by_sum(const Grid& grid, const Ray& ray, const Samples<double>& sample
   return sum * step;
 }
 
-/// Exact xi, walk and samples included, against the sum at the lowest rate 2^k at which it has six digits: whose relative
-/// error is at most 1e-6, as root mean square over the rays.
+/// Exact xi, walk and samples included, against the sum at the lowest rate 2^k at which it has six digits: whose
+/// relative error is at most 1e-6, as root mean square over the rays.
 template <class S>
 void exact_xi_against_sums(benchmark::State& state) {
   const Grid& grid = field(static_cast<double>(state.range(0)));
@@ -135,8 +135,18 @@ void exact_xi_against_sums(benchmark::State& state) {
   state.counters["rays_per_second"] = static_cast<double>(rays.size()) / state.counters["subject_seconds"];
 }
 // The argument is the field's smoothing in voxels.
-BENCHMARK_TEMPLATE(exact_xi_against_sums, Order1)->ArgName("smoothing")->Arg(0)->Arg(1)->UseManualTime()->Unit(benchmark::kMillisecond);
-BENCHMARK_TEMPLATE(exact_xi_against_sums, Order2)->ArgName("smoothing")->Arg(0)->Arg(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_TEMPLATE(exact_xi_against_sums, Order1)
+    ->ArgName("smoothing")
+    ->Arg(0)
+    ->Arg(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_TEMPLATE(exact_xi_against_sums, Order2)
+    ->ArgName("smoothing")
+    ->Arg(0)
+    ->Arg(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 
 /// The measure behind the xi studies on two threads, against one.
 void two_threads_against_one(benchmark::State& state) {

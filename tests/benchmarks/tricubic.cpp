@@ -1,10 +1,11 @@
-// Exact tricubic chains against tricubic samples, and virtual samples against true ones (Lee 2010, figure 4 and table 1).
+// Exact tricubic chains against tricubic samples, and virtual samples against true ones (Lee 2010, figure 4 and table
+// 1).
 
+#include "signals/tricubic.hpp"
 #include "measures/ray_ensemble.hpp"
 #include "paired.hpp"
 #include "rules/rules.hpp"
 #include "signals/random_field.hpp"
-#include "signals/tricubic.hpp"
 #include "signals/tricubic_value.hpp"
 
 #include <array>
@@ -44,8 +45,8 @@ std::array<double, 3> point_at(const Ray& ray, double t) {
           ray.origin[2] + t * ray.direction[2]};
 }
 
-/// The cubic B-spline at a point away from the border, as a careful renderer computes it: weights once for each axis, and
-/// 16 + 4 + 1 sums of four products.
+/// The cubic B-spline at a point away from the border, as a careful renderer computes it: weights once for each axis,
+/// and 16 + 4 + 1 sums of four products.
 double bspline_sample(const Grid& grid, const std::array<double, 3>& point) {
   std::array<std::array<double, 4>, 3> weight{};
   std::array<std::int64_t, 3> first{};
@@ -65,8 +66,8 @@ double bspline_sample(const Grid& grid, const std::array<double, 3>& point) {
     double in_slice = 0;
     for (std::int64_t j = 0; j < 4; ++j) {
       const double* const voxels = corner + k * slice + j * row;
-      const double in_row = (weight[0][0] * voxels[0] + weight[0][1] * voxels[1]) +
-                            (weight[0][2] * voxels[2] + weight[0][3] * voxels[3]);
+      const double in_row =
+          (weight[0][0] * voxels[0] + weight[0][1] * voxels[1]) + (weight[0][2] * voxels[2] + weight[0][3] * voxels[3]);
       in_slice += weight[1][static_cast<std::size_t>(j)] * in_row;
     }
     sum += weight[2][static_cast<std::size_t>(k)] * in_slice;
@@ -93,8 +94,8 @@ double sum_of_true_samples(const Ray& ray, int rate) {
   return sum;
 }
 
-/// The sum of samples in the same places, a true one at every voxel and `Count` virtual ones behind it: as it goes on, the
-/// ray takes one new true sample, ahead of the interval it is in (Lee 2010, section 4).
+/// The sum of samples in the same places, a true one at every voxel and `Count` virtual ones behind it: as it goes on,
+/// the ray takes one new true sample, ahead of the interval it is in (Lee 2010, section 4).
 template <int Count>
 double sum_of_virtual_samples(const Ray& ray) {
   Rules<double> rules;
@@ -108,8 +109,7 @@ double sum_of_virtual_samples(const Ray& ray) {
     const auto curve = rules.virtual_catmull_rom(before, front, back, after);
     sum += front;
     for (int i = 1; i <= Count; ++i) sum += rules.virtual_sample(curve, static_cast<double>(i) / (Count + 1));
-    const double next =
-        k + 3 <= ray_length ? sample(k + 3) : rules.virtual_catmull_rom_ghost(after, back, front);
+    const double next = k + 3 <= ray_length ? sample(k + 3) : rules.virtual_catmull_rom_ghost(after, back, front);
     before = front;
     front = back;
     back = after;
@@ -167,7 +167,8 @@ void virtual_samples_against_true(benchmark::State& state) {
 BENCHMARK_TEMPLATE(virtual_samples_against_true, 3)->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_TEMPLATE(virtual_samples_against_true, 7)->UseManualTime()->Unit(benchmark::kMillisecond);
 
-/// Three virtual samples per voxel against seven: `extra_cost` is claim lee-vs7-cost, 0.101 for whole frames on Lee's GPU.
+/// Three virtual samples per voxel against seven: `extra_cost` is claim lee-vs7-cost, 0.101 for whole frames on Lee's
+/// GPU.
 void three_virtual_samples_against_seven(benchmark::State& state) {
   benchmarks::run_paired(
       state, [] { return over_all_rays(sum_of_virtual_samples<3>); },

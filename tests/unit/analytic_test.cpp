@@ -1,8 +1,8 @@
+#include "signals/analytic.hpp"
 #include "catalogue.hpp"
 #include "core/error.hpp"
 #include "measures/order.hpp"
 #include "measures/signal_error.hpp"
-#include "signals/analytic.hpp"
 #include "signals/marschner_lobb.hpp"
 
 #include <gtest/gtest.h>

@@ -2,8 +2,8 @@
 #include "core/random.hpp"
 #include "core/real.hpp"
 
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <gtest/gtest.h>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
 
 #include <cmath>
 #include <limits>
@@ -48,9 +48,9 @@ Bernstein<Degree> from_roots(const std::array<double, Degree>& roots) {
 
 template <class Degree>
 class BernsteinTest : public testing::Test {};
-using Degrees = testing::Types<std::integral_constant<int, 0>, std::integral_constant<int, 1>,
-                               std::integral_constant<int, 2>, std::integral_constant<int, 3>,
-                               std::integral_constant<int, 9>>;
+using Degrees =
+    testing::Types<std::integral_constant<int, 0>, std::integral_constant<int, 1>, std::integral_constant<int, 2>,
+                   std::integral_constant<int, 3>, std::integral_constant<int, 9>>;
 TYPED_TEST_SUITE(BernsteinTest, Degrees);
 
 TYPED_TEST(BernsteinTest, ValueIsTheSumOfTheBasis) {
@@ -89,7 +89,8 @@ TYPED_TEST(BernsteinTest, PartsAreThePolynomial) {
     }
     EXPECT_EQ(p.restricted(0, 1), p);
     const auto backwards = p.restricted(0.7, 0.2);
-    for (const double u : {0.0, 0.3, 1.0}) EXPECT_NEAR(backwards.value(u), part.value(1 - u), 4 * (degree + 1) * epsilon);
+    for (const double u : {0.0, 0.3, 1.0})
+      EXPECT_NEAR(backwards.value(u), part.value(1 - u), 4 * (degree + 1) * epsilon);
   }
 }
 

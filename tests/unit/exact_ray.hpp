@@ -89,7 +89,9 @@ inline Chain<3, Real50> exact_chain(const Grid& grid, const Ray& ray) {
     const Real50 f2 = at(Real50(10) / 3);
     const Real50 f3 = at(5);
     chain.pieces.push_back(
-        {begin, length, {{f0, (-5 * f0 + 18 * f1 - 9 * f2 + 2 * f3) / 6, (2 * f0 - 9 * f1 + 18 * f2 - 5 * f3) / 6, f3}}});
+        {begin,
+         length,
+         {{f0, (-5 * f0 + 18 * f1 - 9 * f2 + 2 * f3) / 6, (2 * f0 - 9 * f1 + 18 * f2 - 5 * f3) / 6, f3}}});
   }
   chain.end = exact.length;
   return chain;

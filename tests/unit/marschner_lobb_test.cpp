@@ -1,5 +1,5 @@
-#include "core/error.hpp"
 #include "signals/marschner_lobb.hpp"
+#include "core/error.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#include "core/error.hpp"
 #include "measures/order.hpp"
+#include "core/error.hpp"
 
 #include <gtest/gtest.h>
 

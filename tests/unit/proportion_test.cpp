@@ -1,6 +1,6 @@
+#include "measures/proportion.hpp"
 #include "core/error.hpp"
 #include "core/random.hpp"
-#include "measures/proportion.hpp"
 
 #include <gtest/gtest.h>
 

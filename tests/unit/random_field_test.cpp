@@ -1,6 +1,6 @@
+#include "signals/random_field.hpp"
 #include "core/error.hpp"
 #include "core/random.hpp"
-#include "signals/random_field.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -1,5 +1,5 @@
-#include "core/error.hpp"
 #include "measures/ray_ensemble.hpp"
+#include "core/error.hpp"
 #include "signals/trilinear.hpp"
 
 #include <gtest/gtest.h>

@@ -22,8 +22,7 @@ Chain<Degree, Real> smooth_signal(std::uint64_t seed, double length) {
   Chain<Degree, Real> chain;
   Bernstein<Degree, Real> p;
   for (std::size_t i = 0; i <= Degree; ++i)
-    p.coefficients[i] =
-        random_numbers(seed, RandomStream::points, i / 4)[i % 4];
+    p.coefficients[i] = random_numbers(seed, RandomStream::points, i / 4)[i % 4];
   chain.pieces.push_back({0, length, p});
   chain.end = length;
   return chain;
@@ -103,8 +102,8 @@ TEST(EveryScheme, HasItsOrderAndItsErrorConstant) {
     double sum_xy = 0;
     double ratio = 0;
     int n = 0;
-    // The ghost samples at the ends of virtual_catmull_rom add a share of about 15 h to its error: 0.04 in the slope. With
-    // virtual samples the cubic's own error, of third order, shows until h is far below that of the lines.
+    // The ghost samples at the ends of virtual_catmull_rom add a share of about 15 h to its error: 0.04 in the slope.
+    // With virtual samples the cubic's own error, of third order, shows until h is far below that of the lines.
     for (int k = 7; k <= 11; ++k, ++n) {
       const double step = std::ldexp(1, -k);
       const double error = xi_at_step<S>(signal, step);
@@ -120,8 +119,7 @@ TEST(EveryScheme, HasItsOrderAndItsErrorConstant) {
     }
     const double covariance = n * sum_xy - sum_x * sum_y;
     const double slope = covariance / (n * sum_xx - sum_x * sum_x);
-    const double correlation =
-        covariance / std::sqrt((n * sum_xx - sum_x * sum_x) * (n * sum_yy - sum_y * sum_y));
+    const double correlation = covariance / std::sqrt((n * sum_xx - sum_x * sum_x) * (n * sum_yy - sum_y * sum_y));
     EXPECT_NEAR(slope, S::info.order, 0.05);
     EXPECT_GT(correlation, 0.9999);
     // Two-sided: a scheme that silently gets better fails as well.
@@ -288,10 +286,9 @@ TEST(VirtualSamples, AreValuesOfTheCubicByLeesBlendingFunctions) {
   for (std::size_t k = 0; k < 5; ++k)
     for (std::size_t i = 0; i < 4; ++i) {
       const double t = static_cast<double>(i) / 4;
-      const double expected = intensity[k] * 0.5 * (-t * t * t + 2 * t * t - t) +
-                              intensity[k + 1] * 0.5 * (3 * t * t * t - 5 * t * t + 2) +
-                              intensity[k + 2] * 0.5 * (-3 * t * t * t + 4 * t * t + t) +
-                              intensity[k + 3] * 0.5 * (t * t * t - t * t);
+      const double expected =
+          intensity[k] * 0.5 * (-t * t * t + 2 * t * t - t) + intensity[k + 1] * 0.5 * (3 * t * t * t - 5 * t * t + 2) +
+          intensity[k + 2] * 0.5 * (-3 * t * t * t + 4 * t * t + t) + intensity[k + 3] * 0.5 * (t * t * t - t * t);
       const auto& piece = approximation.pieces[4 * k + i];
       EXPECT_EQ(piece.start, DoubleDouble(static_cast<double>(k) + t));
       EXPECT_EQ(piece.length, 0.25);

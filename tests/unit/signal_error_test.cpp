@@ -1,13 +1,13 @@
+#include "measures/signal_error.hpp"
 #include "catalogue.hpp"
 #include "measures/ray_ensemble.hpp"
-#include "measures/signal_error.hpp"
 #include "signals/marschner_lobb.hpp"
 #include "signals/random_field.hpp"
 #include "signals/trilinear.hpp"
 #include "unit/exact_ray.hpp"
 
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <gtest/gtest.h>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
 
 #include <limits>
 

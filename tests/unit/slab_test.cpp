@@ -1,5 +1,5 @@
-#include "core/real.hpp"
 #include "core/slab.hpp"
+#include "core/real.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
+#include "signals/tricubic.hpp"
 #include "measures/ray_ensemble.hpp"
 #include "signals/random_field.hpp"
-#include "signals/tricubic.hpp"
 #include "signals/tricubic_value.hpp"
 #include "unit/exact_ray.hpp"
 
@@ -92,7 +92,8 @@ TEST(Tricubic, CatmullRomPassesThroughItsVoxels) {
 TEST(Prefilter, SplineReproducesTheVoxels) {
   for (const std::array<std::int64_t, 3>& size : std::vector<std::array<std::int64_t, 3>>{{9, 7, 8}, {1, 2, 3}}) {
     Grid grid{.size = size, .spacing = {1, 1, 1}, .values = {}};
-    for (std::int64_t i = 0; i < size[0] * size[1] * size[2]; ++i) grid.values.push_back(sine(static_cast<double>(i * i % 17)));
+    for (std::int64_t i = 0; i < size[0] * size[1] * size[2]; ++i)
+      grid.values.push_back(sine(static_cast<double>(i * i % 17)));
     const Grid coefficients = bspline_coefficients(grid);
     for (std::int64_t k = 0; k < size[2]; ++k)
       for (std::int64_t j = 0; j < size[1]; ++j)

@@ -1,8 +1,8 @@
+#include "signals/trilinear.hpp"
 #include "core/error.hpp"
 #include "core/random.hpp"
 #include "measures/ray_ensemble.hpp"
 #include "signals/random_field.hpp"
-#include "signals/trilinear.hpp"
 #include "unit/exact_ray.hpp"
 
 #include <gtest/gtest.h>
@@ -15,9 +15,9 @@
 namespace raytruth {
 namespace {
 
-using testing_support::ExactRay;
 using testing_support::exact_chain;
 using testing_support::exact_ray;
+using testing_support::ExactRay;
 using testing_support::in_50_digits;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -90,28 +90,28 @@ TEST(Trilinear, DegenerateRaysAreExact) {
   const double infinity = std::numeric_limits<double>::infinity();
   const double below_one = std::nextafter(1.0, 0.0);
   const std::vector<Ray> rays{
-      {{-3, 2.25, 3.5}, {1, 0, 0}, infinity},                     // axis-parallel, from outside
-      {{-3, 2, 3}, {1, 0, 0}, infinity},                          // along an edge of cells
-      {{2, 8, 3.25}, {0, -1, 0}, infinity},                       // along a face, backwards
-      {{2.5, 2.5, 2.5}, {0, 0, 1}, infinity},                     // from inside
-      {{-1, -1, -1}, {1, 1, 1}, infinity},                        // through corners
-      {{5, 5, 5}, {-1, -1, -1}, infinity},                        // through corners, backwards
-      {{0, 0, 2.3}, {1, 1, 0}, infinity},                         // through edges
-      {{0, 1, 0.5}, {2, 1, 0}, infinity},                         // through every second edge
-      {{4, 5, 6}, {-1, 0.3, -0.2}, infinity},                     // from the last voxel
-      {{0, 0, 0}, {1, 1e-9, 1e-17}, infinity},                    // nearly parallel
-      {{0, 0, 0}, {1, 1e-200, 1e-310}, infinity},                 // directions that vanish
-      {{2, 2, 2}, {1, -1e-9, 0}, infinity},                       // leaves a face at a grazing angle
-      {{-0.5, 2.5, 3.5}, {1, 0.1, 0.1}, infinity},                // starts on the border of the field
-      {{4.5, 2.5, 3.5}, {-1, 0.1, 0.1}, infinity},                // and on the opposite one
-      {{-0.5, 2.5, 3.5}, {0, 1, 0.2}, infinity},                  // runs along the border of the field
-      {{4.5, 5.5, 0}, {0, 0, 1}, infinity},                       // runs along an edge of the field
-      {{below_one, below_one, below_one}, {1, 1, 1}, infinity},   // a corner, met within rounding
-      {{0.1, 1.1, 2.1}, {1, 1, 1}, infinity},                     // borders met together but for rounding
-      {{2.5, 2.5, 2.5}, {1, 2, 3}, 1e-12},                        // shorter than any cell
-      {{2.5, 2.5, 2.5}, {1, 2, 3}, 1e-300},                       // next to nothing
-      {{-1e6, -1e6, -1e6 + 0.125}, {1, 1, 1}, infinity},          // from afar
-      {{-1e12, 2.75, 3.25}, {1, 1e-13, -1e-13}, infinity},        // from very far
+      {{-3, 2.25, 3.5}, {1, 0, 0}, infinity},                    // axis-parallel, from outside
+      {{-3, 2, 3}, {1, 0, 0}, infinity},                         // along an edge of cells
+      {{2, 8, 3.25}, {0, -1, 0}, infinity},                      // along a face, backwards
+      {{2.5, 2.5, 2.5}, {0, 0, 1}, infinity},                    // from inside
+      {{-1, -1, -1}, {1, 1, 1}, infinity},                       // through corners
+      {{5, 5, 5}, {-1, -1, -1}, infinity},                       // through corners, backwards
+      {{0, 0, 2.3}, {1, 1, 0}, infinity},                        // through edges
+      {{0, 1, 0.5}, {2, 1, 0}, infinity},                        // through every second edge
+      {{4, 5, 6}, {-1, 0.3, -0.2}, infinity},                    // from the last voxel
+      {{0, 0, 0}, {1, 1e-9, 1e-17}, infinity},                   // nearly parallel
+      {{0, 0, 0}, {1, 1e-200, 1e-310}, infinity},                // directions that vanish
+      {{2, 2, 2}, {1, -1e-9, 0}, infinity},                      // leaves a face at a grazing angle
+      {{-0.5, 2.5, 3.5}, {1, 0.1, 0.1}, infinity},               // starts on the border of the field
+      {{4.5, 2.5, 3.5}, {-1, 0.1, 0.1}, infinity},               // and on the opposite one
+      {{-0.5, 2.5, 3.5}, {0, 1, 0.2}, infinity},                 // runs along the border of the field
+      {{4.5, 5.5, 0}, {0, 0, 1}, infinity},                      // runs along an edge of the field
+      {{below_one, below_one, below_one}, {1, 1, 1}, infinity},  // a corner, met within rounding
+      {{0.1, 1.1, 2.1}, {1, 1, 1}, infinity},                    // borders met together but for rounding
+      {{2.5, 2.5, 2.5}, {1, 2, 3}, 1e-12},                       // shorter than any cell
+      {{2.5, 2.5, 2.5}, {1, 2, 3}, 1e-300},                      // next to nothing
+      {{-1e6, -1e6, -1e6 + 0.125}, {1, 1, 1}, infinity},         // from afar
+      {{-1e12, 2.75, 3.25}, {1, 1e-13, -1e-13}, infinity},       // from very far
   };
   for (std::size_t i = 0; i < rays.size(); ++i) {
     SCOPED_TRACE("ray " + std::to_string(i));
@@ -123,13 +123,13 @@ TEST(Trilinear, RayThatMissesIsEmpty) {
   const Grid grid = noise({5, 6, 7});
   const double infinity = std::numeric_limits<double>::infinity();
   const std::vector<Ray> rays{
-      {{-3, 2, 3}, {-1, 0, 0}, infinity},       // looks away
-      {{-3, 7, 3}, {1, 0, 0}, infinity},        // passes by
-      {{-3, -0.6, 3}, {1, 0, 0}, infinity},     // passes by closely
-      {{4.6, 2, 2}, {0, 1, 0}, infinity},       // beside the field
-      {{-1.5, 0.5, 3}, {1, -1, 0}, infinity},   // touches an edge of the field
-      {{2, 2, 2}, {1, 0, 0}, 0},                // length zero
-      {{4.5, 2, 2}, {1, 0, 0}, infinity},       // starts where the field ends
+      {{-3, 2, 3}, {-1, 0, 0}, infinity},      // looks away
+      {{-3, 7, 3}, {1, 0, 0}, infinity},       // passes by
+      {{-3, -0.6, 3}, {1, 0, 0}, infinity},    // passes by closely
+      {{4.6, 2, 2}, {0, 1, 0}, infinity},      // beside the field
+      {{-1.5, 0.5, 3}, {1, -1, 0}, infinity},  // touches an edge of the field
+      {{2, 2, 2}, {1, 0, 0}, 0},               // length zero
+      {{4.5, 2, 2}, {1, 0, 0}, infinity},      // starts where the field ends
   };
   for (std::size_t i = 0; i < rays.size(); ++i) {
     SCOPED_TRACE("ray " + std::to_string(i));
@@ -166,7 +166,8 @@ TEST(Trilinear, LinearDataGiveLinearSignals) {
   for (std::int64_t k = 0; k < 6; ++k)
     for (std::int64_t j = 0; j < 6; ++j)
       for (std::int64_t i = 0; i < 6; ++i)
-        grid.values[grid.index(i, j, k)] = 0.5 * static_cast<double>(i) - 2.0 * static_cast<double>(j) + static_cast<double>(k);
+        grid.values[grid.index(i, j, k)] =
+            0.5 * static_cast<double>(i) - 2.0 * static_cast<double>(j) + static_cast<double>(k);
   const Ray ray{{1, 4, 1}, {1, -1, 1}, 3};
   const Chain<3> chain = trace_trilinear(grid, ray);
   const double slope = (0.5 + 2.0 + 1.0) / std::sqrt(3.0);

@@ -83,7 +83,8 @@ TEST(VirtualSamplesMeasure, AgreesWithItsDefinitionIn50DigitsToItsRadius) {
   const std::int64_t count = 8;
   const auto rows = rows_of(grid, count);
   EXPECT_EQ(rows.size(), 2U * 7 * 2);
-  for (const auto& [reconstruction, coefficients] : {std::pair{"bspline_raw", &grid}, {"bspline_prefiltered", &prefiltered}})
+  for (const auto& [reconstruction, coefficients] :
+       {std::pair{"bspline_raw", &grid}, {"bspline_prefiltered", &prefiltered}})
     for (const std::string method : {"Cubic x1 + VS x3", "Cubic x1 + VS x7", "Cubic x1 + LinearVS x3", "Cubic x1",
                                      "Linear x4", "Linear x1 + VS x3", "Linear x1"}) {
       SCOPED_TRACE(method);
@@ -92,7 +93,9 @@ TEST(VirtualSamplesMeasure, AgreesWithItsDefinitionIn50DigitsToItsRadius) {
       SampleError between;
       for (std::uint64_t i = 0; i < count; ++i) {
         const auto ray = testing_support::exact_ray(grid, random_ray(grid, ray_length, 1, i));
-        const auto cubic = [&](const Real50& t) { return tricubic_value(*coefficients, CubicKernel::bspline, ray.point(t)); };
+        const auto cubic = [&](const Real50& t) {
+          return tricubic_value(*coefficients, CubicKernel::bspline, ray.point(t));
+        };
         const auto linear = [&](const Real50& t) { return trilinear_value(grid, ray.point(t)); };
         Expected expected;
         for (int t = 0; t <= ray_length; ++t) {
