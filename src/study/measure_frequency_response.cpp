@@ -112,6 +112,8 @@ void add_curve(std::vector<Row>& rows, const Spectrum& spectrum) {
     row.emplace_back("amplitude", amplitude);
     row.emplace_back("amplitude_radius", spectrum.radius);
     row.emplace_back("level_db", level(amplitude));
+    row.emplace_back("level_db_radius", std::max(level(amplitude + spectrum.radius) - level(amplitude),
+                                                 level(amplitude) - level(std::max(amplitude - spectrum.radius, 0.0))));
     rows.push_back(std::move(row));
   }
 }
@@ -172,7 +174,9 @@ std::vector<Column> frequency_response_columns(const Experiment& /*experiment*/,
       {.name = "amplitude_radius", .unit = "", .description = "bound on the rounding error of the amplitude"},
       {.name = "level_db",
        .unit = "dB",
-       .description = "20 log10 of the amplitude; -300 stands for all below, so for 0 too"},
+       .description = "20 log10 of the amplitude; -300 stands for all below, so for 0 too",
+       .radius = "level_db_radius"},
+      {.name = "level_db_radius", .unit = "dB", .description = "what the amplitude's radius makes of the level"},
   };
   const auto add_peak_columns = [&columns](const std::string& name, const std::string& description) {
     columns.push_back({.name = name + "_db", .unit = "dB", .description = description});
