@@ -143,8 +143,9 @@ Json evaluate_scheme(const Chain<Degree>& signal, const Samples<double>& samples
 Case CaseReader::read(const JsonReader& json) {
   json.only({"signal", "transfer_function", "emission", "sampling", "schemes"});
   const JsonReader signal = json.at("signal");
-  std::vector<std::string_view> kinds;
-  for (const auto& entry : catalogue::signals) kinds.push_back(entry.name);
+  std::vector<std::string_view> kinds(catalogue::signals.size());
+  std::transform(catalogue::signals.begin(), catalogue::signals.end(), kinds.begin(),
+                 [](const catalogue::Entry& entry) { return entry.name; });
   const std::string kind = signal.at("kind").word(kinds);
   Case result{json, {}, read_sampling(json.at("sampling")), read_schemes(json.at("schemes"))};
   if (const auto transfer = json.find("transfer_function")) read_transfer_function(*transfer, warnings_);
