@@ -9,6 +9,7 @@ namespace raytruth {
 std::vector<Column> quantile_columns(const std::string& name, const std::string& unit, const std::string& description,
                                      const std::string& radius) {
   std::vector<Column> columns;
+  columns.reserve(shown_percents.size());
   for (const int percent : shown_percents)
     columns.push_back({.name = fmt::format("{}_p{:02}", name, percent),
                        .unit = unit,
