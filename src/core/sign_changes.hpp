@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 namespace raytruth {
 
@@ -27,7 +28,7 @@ int sign(const Real& x) {
 template <class Real, int Degree>
 class SignChangeSearch {
  public:
-  explicit SignChangeSearch(const Real& noise) : noise_(noise) {}
+  explicit SignChangeSearch(Real noise) : noise_(std::move(noise)) {}
 
   struct Polynomial {
     std::array<Real, Degree + 1> coefficients;

@@ -6,15 +6,15 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numeric>
 
 namespace raytruth {
 namespace {
 
 /// sum_k a_k x^k in 50 digits.
 Real50 power_value(const std::vector<double>& coefficients, const Real50& x) {
-  Real50 sum = 0;
-  for (auto a = coefficients.rbegin(); a != coefficients.rend(); ++a) sum = sum * x + *a;
-  return sum;
+  return std::accumulate(coefficients.rbegin(), coefficients.rend(), Real50(0),
+                         [&x](const Real50& sum, double a) { return Real50(sum * x + a); });
 }
 
 TEST(BernsteinFromPowers, IsTheSamePolynomialToTheLastBits) {
