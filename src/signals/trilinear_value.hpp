@@ -15,7 +15,7 @@ namespace raytruth {
 template <class Real>
 Real trilinear_value(const Grid& grid, const std::array<Real, 3>& point) {
   using std::floor;
-  std::array<std::array<Real, 2>, 3> weight;
+  std::array<std::array<Real, 2>, 3> weight{};
   std::array<std::array<std::int64_t, 2>, 3> voxel{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Real cell = floor(point[axis]);
