@@ -1,4 +1,4 @@
-"""Fills README's tables from results/ alone: readme_tables.py REPOSITORY [--check]. With --check nothing is written, and
+"""Fills the tables of READMEs from results/ alone: readme_tables.py REPOSITORY [--check]. With --check nothing is written, and
 the exit code is 1 if a table is not what the results say."""
 
 import json
@@ -19,13 +19,21 @@ def table(head, rows):
 def published(results):
     rows = []
     for file in sorted(results.glob("*.json")):
-        for claim in json.loads(file.read_text(encoding="utf-8"))["published"]:
+        for claim in json.loads(file.read_text(encoding="utf-8")).get("published", []):
             measured = "-"
             if claim["measured"] is not None:
                 measured = f"{number(claim['measured'])} ({number(claim['low'])} to {number(claim['high'])})"
             name = claim["claim"] + (f" ({claim['part']})" if "part" in claim else "")
             rows.append([name, number(claim["stated"]), measured, claim["verdict"], f"[{file.stem}](results/{file.name})"])
     return table(["claim", "published", "measured (low to high)", "verdict", "experiment"], rows)
+
+
+def conformance(results):
+    rows = json.loads((results / "conformance.json").read_text(encoding="utf-8"))["rows"]
+    schemes = list(dict.fromkeys(row["scheme"] for row in rows))
+    digits = {(row["level"], row["scheme"]): f"{row['digits_min']:.1f} ({row['digits_median']:.1f})" for row in rows}
+    levels = dict.fromkeys(row["level"] for row in rows)
+    return table(["level", *schemes], [[level.replace("_", " "), *(digits[level, scheme] for scheme in schemes)] for level in levels])
 
 
 def benchmarks(results):
@@ -38,24 +46,51 @@ def benchmarks(results):
     return table(["subject against peer", "speedup", "subject, µs"], rows)
 
 
-def fill(text, name, content):
+def signatures(rules):
+    """By function: what it returns and takes, and the file that has it."""
+    found = {}
+    for file in sorted(rules.glob("*.glsl")):
+        for match in re.finditer(r"^((?:real|vec4) (\w+)\([^)]*\))", file.read_text(encoding="utf-8"), re.MULTILINE):
+            found[match[2]] = re.sub(r"\s+", " ", match[1]), file.name
+    return found
+
+
+def functions(results):
+    document = json.loads((results / "gl_cross_check.json").read_text(encoding="utf-8"))
+    text = signatures(results.parent / "src" / "rules")
+    worst = {}
+    for row in document["rows"]:
+        if row["measure"] == "gl_functions":
+            worst.setdefault(row["function"], []).append(row)
+    rows = []
+    for name, both in worst.items():
+        signature, file = text[name]
+        figures = [number(max(row[column] for row in both)) for column in ("shader_max_ulps", "gl_max_ulps", "gl_bound")]
+        rows.append([f"`{signature}`", f"[{file}]({file})", both[0]["arguments"], *figures])
+    return table(["function", "file", "kinds of arguments", "shader - truth", "GLSL - binary32", "allowed"], rows)
+
+
+def fill(file, text, name, content):
     pattern = re.compile(rf"(<!-- {name}:[^>]*-->\n).*?(<!-- /{name} -->)", re.DOTALL)
     filled, count = pattern.subn(lambda match: f"{match[1]}{content}\n{match[2]}", text)
     if count != 1:
-        sys.exit(f"README.md: found {count} places for the table '{name}', 1 is allowed")
+        sys.exit(f"{file}: found {count} places for the table '{name}', 1 is allowed")
     return filled
+
+
+TABLES = {"README.md": (published, conformance, benchmarks), "src/rules/README.md": (functions,)}
 
 
 def main():
     top = pathlib.Path(sys.argv[1])
-    readme = top / "README.md"
-    before = readme.read_text(encoding="utf-8")
-    after = before
-    for make in (published, benchmarks):
-        after = fill(after, make.__name__, make(top / "results"))
-    if "--check" in sys.argv[2:]:
-        sys.exit("README.md: its tables are not those of results/; experiments/run --update fills them" if after != before else 0)
-    readme.write_text(after, encoding="utf-8")
+    for file, makers in TABLES.items():
+        before = after = (top / file).read_text(encoding="utf-8")
+        for make in makers:
+            after = fill(file, after, make.__name__, make(top / "results"))
+        if "--check" not in sys.argv[2:]:
+            (top / file).write_text(after, encoding="utf-8")
+        elif after != before:
+            sys.exit(f"{file}: its tables are not those of results/; experiments/run --update fills them")
 
 
 main()

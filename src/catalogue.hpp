@@ -1,23 +1,35 @@
 #pragma once
 
+#include "schemes/integral_scheme.hpp"
 #include "schemes/order0.hpp"
 #include "schemes/order1.hpp"
 #include "schemes/order2.hpp"
+#include "schemes/order3.hpp"
 #include "schemes/virtual_catmull_rom.hpp"
 #include "schemes/virtual_samples.hpp"
+#include "transfer/study_transfers.hpp"
 
 #include <array>
 #include <cstddef>
 #include <string_view>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 /// The table of contents: every ingredient, in the order in which tables and plots show them. To add one, write its
 /// file and give it a line here; names, help, tests and plots follow from the line.
 namespace raytruth::catalogue {
 
-using Schemes = std::tuple<Order0Left, Order0Right, Order0Mid, Order1, Order2, VirtualCatmullRom, VirtualCatmullRom1,
-                           VirtualCatmullRom3, VirtualCatmullRom7, VirtualLinear1, VirtualLinear3, VirtualLinear7>;
+using Schemes =
+    std::tuple<Order0Left, Order0Right, Order0Mid, Order1, Order2, Order3, VirtualCatmullRom, VirtualCatmullRom1,
+               VirtualCatmullRom3, VirtualCatmullRom7, VirtualLinear1, VirtualLinear3, VirtualLinear7>;
+
+/// From samples and a transfer function to colour and opacity (catalogue.cpp). A name that stands among the `Schemes`
+/// too is that of the ideal pre-integration of their signal.
+const std::vector<IntegralScheme>& integral_schemes();
+
+/// The one of this name; null if there is none.
+const IntegralScheme* find_integral_scheme(std::string_view name);
 
 /// An ingredient without a type of its own.
 struct Entry {
@@ -39,8 +51,27 @@ inline constexpr std::array fields{
     Entry{"volume", "a file, NRRD or NIfTI, found by name"},
 };
 
+/// A transfer function of the studies.
+struct TransferEntry {
+  std::string_view name;
+  std::string_view summary;
+  PiecewiseLinear (*make)(double extinction, std::uint64_t seed);  ///< null: a file states its points
+};
+
 inline constexpr std::array transfers{
-    Entry{"points", "piecewise linear between points (s, extinction, color); two points at one s make a jump"},
+    TransferEntry{"points", "piecewise linear between points (s, extinction, color); two points at one s make a jump",
+                  nullptr},
+    TransferEntry{"ramp", "extinction from 0 at s = 0 to its largest at 1; color (s, 1/2, 1 - s)",
+                  [](double extinction, std::uint64_t) { return ramp_transfer(extinction); }},
+    TransferEntry{"tent", "a tent of extinction over 0.5 +- 0.1; color (s, 1/2, 1 - s)",
+                  [](double extinction, std::uint64_t) { return tent_transfer(extinction); }},
+    TransferEntry{"isoslab", "a box of extinction over 0.5 +- 1/512; color (s, 1/2, 1 - s)",
+                  [](double extinction, std::uint64_t) { return isoslab_transfer(extinction); }},
+    TransferEntry{"step", "no extinction below 0.5, a constant one from there on; color (s, 1/2, 1 - s)",
+                  [](double extinction, std::uint64_t) { return step_transfer(extinction); }},
+    TransferEntry{"gaussian", "extinction a Gaussian of mean 0.5, deviation 0.05, 1025 points; color (s, 1/2, 1 - s)",
+                  [](double extinction, std::uint64_t) { return gaussian_transfer(extinction); }},
+    TransferEntry{"random", "extinction and color random at 256 points, from the seed", random_transfer},
 };
 
 inline constexpr std::array samplings{

@@ -58,9 +58,16 @@ constexpr DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
 
 constexpr DoubleDouble operator-(const DoubleDouble& a, const DoubleDouble& b) { return a + (-b); }
 
+constexpr DoubleDouble& operator+=(DoubleDouble& a, const DoubleDouble& b) { return a = a + b; }
+
 inline DoubleDouble operator*(const DoubleDouble& a, double b) {
   const DoubleDouble product = two_product(a.high, b);
   return fast_two_sum(product.high, product.low + a.low * b);
+}
+
+inline DoubleDouble operator*(const DoubleDouble& a, const DoubleDouble& b) {
+  const DoubleDouble product = two_product(a.high, b.high);
+  return fast_two_sum(product.high, product.low + (a.high * b.low + a.low * b.high));
 }
 
 /// a / b; infinite where the quotient overflows.
@@ -69,6 +76,12 @@ inline DoubleDouble operator/(const DoubleDouble& a, double b) {
   if (!std::isfinite(quotient)) return quotient;
   const double remainder = std::fma(-quotient, b, a.high) + a.low;
   return fast_two_sum(quotient, remainder / b);
+}
+
+/// The largest integer not above a. A sum just below an integer may have it as its high part.
+inline double floor(const DoubleDouble& a) {
+  const double floor = std::floor(a.high);
+  return floor == a.high && a.low < 0 ? floor - 1 : floor;
 }
 
 /// The type of abscissae that goes with an arithmetic.

@@ -27,6 +27,11 @@ class Binary32 {
   friend constexpr Binary32 operator-(Binary32 a) { return round(-a.value_); }
   friend constexpr auto operator<=>(Binary32 a, Binary32 b) = default;
 
+  friend Binary32 floor(Binary32 x) { return round(std::floor(x.value_)); }
+  friend Binary32 sqrt(Binary32 x) { return round(std::sqrt(x.value_)); }
+  friend Binary32 expm1(Binary32 x) { return round(std::expm1(x.value_)); }
+  friend Binary32 log1p(Binary32 x) { return round(std::log1p(x.value_)); }
+
  private:
   static constexpr Binary32 round(float value) {
     Binary32 result;

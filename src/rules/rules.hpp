@@ -5,23 +5,54 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
+
 namespace raytruth {
 
 /// The local formulas, one text for every arithmetic: the characters of the .glsl files, which shaders include, are
 /// compiled here with `real` as binary32, binary64 or 50 digits. What a formula means stands in its file.
 ///
-/// The text keeps to what both languages share: `real`, `vec4`, literals that are exact in binary, no swizzles.
+/// The text keeps to what both languages share: `real`, `vec4`, literals that are exact in binary, no swizzles, and the
+/// functions below.
 template <class Real>
 struct Rules {
   using real = Real;
   using vec4 = Eigen::Array<Real, 4, 1>;
 
+  // Members, so that literals convert to `real` in them.
+  static real min(const real& a, const real& b) { return b < a ? b : a; }
+  static real max(const real& a, const real& b) { return a < b ? b : a; }
+  static real floor(const real& x) {
+    using std::floor;
+    return floor(x);
+  }
+  static real sqrt(const real& x) {
+    using std::sqrt;
+    return sqrt(x);
+  }
+  static real expm1(const real& x) {
+    using std::expm1;
+    return expm1(x);
+  }
+  static real log1p(const real& x) {
+    using std::log1p;
+    return log1p(x);
+  }
+
   // clang-format off
 #include "rules/order0.glsl"
 #include "rules/order1.glsl"
 #include "rules/order2.glsl"
+#include "rules/order3.glsl"
 #include "rules/virtual_catmull_rom.glsl"
 #include "rules/virtual_sample.glsl"
+#include "rules/absorption.glsl"
+#include "rules/over.glsl"
+#include "rules/homogeneous.glsl"
+#include "rules/trapezoid.glsl"
+#include "rules/simpson.glsl"
+#include "rules/opacity_correction.glsl"
+#include "rules/texture_filter.glsl"
   // clang-format on
 
   static Bernstein<3, Real> cubic(const vec4& b) { return {{b[0], b[1], b[2], b[3]}}; }

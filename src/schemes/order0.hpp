@@ -12,6 +12,7 @@ struct Order0Left {
                                    .exact_degree = 0,
                                    .order = 1,
                                    .error_constant = 0.5,
+                                   .integral_order = 1,
                                    .extra_fetches_per_interval = 0,
                                    .color = "#999999",
                                    .marker = "<"};
@@ -31,6 +32,7 @@ struct Order0Right {
                                    .exact_degree = 0,
                                    .order = 1,
                                    .error_constant = 0.5,
+                                   .integral_order = 1,
                                    .extra_fetches_per_interval = 0,
                                    .color = "#56B4E9",
                                    .marker = ">"};
@@ -50,6 +52,7 @@ struct Order0Mid {
                                    .exact_degree = 0,
                                    .order = 1,
                                    .error_constant = 0.25,
+                                   .integral_order = 2,
                                    .extra_fetches_per_interval = 1,
                                    .color = "#E69F00",
                                    .marker = "s"};

@@ -12,6 +12,7 @@ struct Order1 {
                                    .exact_degree = 1,
                                    .order = 2,
                                    .error_constant = 1.0 / 12,
+                                   .integral_order = 2,
                                    .extra_fetches_per_interval = 0,
                                    .color = "#0072B2",
                                    .marker = "o"};

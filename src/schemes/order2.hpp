@@ -13,14 +13,20 @@ struct Order2 {
                                    .exact_degree = 2,
                                    .order = 3,
                                    .error_constant = 1.0 / 24,
+                                   .integral_order = 4,
                                    .extra_fetches_per_interval = 0,
                                    .color = "#D55E00",
                                    .marker = "^"};
 
+  template <class Real>
+  static std::size_t slab_intervals(const Samples<Real>& samples, std::size_t k) {
+    return k + 2 <= samples.interval_count() ? 2 : 1;
+  }
+
   template <int Degree, class Real>
   static Bernstein<3, Real> interval(const Chain<Degree, Real>& signal, const Samples<Real>& samples, std::size_t k) {
     const std::size_t front = k - k % 2;
-    if (front + 2 > samples.interval_count()) return Order1::interval(signal, samples, k);
+    if (slab_intervals(samples, front) == 1) return Order1::interval(signal, samples, k);
     const auto& value = samples.values;
     const Real front_length = samples.length_of(front);
     const Real split = front_length / (front_length + samples.length_of(front + 1));

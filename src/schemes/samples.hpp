@@ -34,6 +34,16 @@ struct Samples {
   }
 };
 
+/// Number of intervals but for a last one that is shorter than the constant step, to the slack of 10^-9 L that constant
+/// sampling leaves it.
+template <class Real>
+std::size_t full_intervals(const Samples<Real>& samples) {
+  const std::size_t count = samples.interval_count();
+  if (count == 0 || !samples.step) return count;
+  const Real slack = Real(1e-9) * static_cast<Real>(samples.positions.back());
+  return samples.length_of(count - 1) < *samples.step - slack ? count - 1 : count;
+}
+
 /// More samples than this on one ray are refused.
 inline constexpr std::int64_t largest_sample_count = 10'000'000;
 

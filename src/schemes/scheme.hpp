@@ -19,6 +19,7 @@ struct SchemeInfo {
   int exact_degree;       ///< polynomials up to this degree are reproduced, the next degree is not
   int order;              ///< xi = O(h^order) where the signal is smooth, sampled at the constant step h
   double error_constant;  ///< xi -> error_constant h^order integral |d^order s / dt^order| dt
+  int integral_order;     ///< of colour and opacity, optics smooth too: s - s^ may cancel within a slab
   int extra_fetches_per_interval;
   int parts_per_interval = 1;  ///< of equal length, a cubic each
   std::string_view color;      ///< of its line in plots (palette of Okabe and Ito, safe for the colour-blind)
@@ -48,6 +49,15 @@ std::string_view refusal(const Samples<Real>& samples) {
     return S::refusal(samples);
   else
     return {};
+}
+
+/// How many intervals, from sample k on, are one slab: one look-up in a table of pre-integrated slabs.
+template <Scheme S, class Real>
+std::size_t slab_intervals(const Samples<Real>& samples, std::size_t k) {
+  if constexpr (requires { S::slab_intervals(samples, k); })
+    return S::slab_intervals(samples, k);
+  else
+    return 1;
 }
 
 /// The signal that scheme S makes of the samples; `approximation` is overwritten and keeps its memory.

@@ -42,6 +42,7 @@ struct VirtualSamples {
             .exact_degree = 1,
             .order = 2,
             .error_constant = error_constant,
+            .integral_order = 2,
             .extra_fetches_per_interval = 0,
             .parts_per_interval = Count + 1,
             .color = color,

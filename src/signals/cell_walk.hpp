@@ -17,10 +17,18 @@
 namespace raytruth {
 
 /// One number for each axis; a fourth, idle one fills a register.
-struct alignas(32) Lanes {
+struct alignas(32) PerAxis {
   std::array<double, 4> lane{};
   double& operator[](std::size_t axis) { return lane[axis]; }
   double operator[](std::size_t axis) const { return lane[axis]; }
+};
+
+/// A segment through a cell: from `begin` to `end` in the cell's own coordinates, [0, 1] on every axis.
+template <class Real>
+struct CellSegment {
+  std::array<std::int64_t, 3> cell;  ///< of the voxel at the low end; -1 in the clamped half before the first one
+  std::array<Real, 3> begin;
+  std::array<Real, 3> end;
 };
 
 /// The walk from cell to cell. Cell i of an axis spans the voxel centres i and i + 1; cells -1 and n - 1 are the
@@ -32,16 +40,13 @@ class CellWalk {
            const std::array<double, 3>& direction, const DoubleDouble& entry) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const DoubleDouble start = DoubleDouble(origin[axis]) + entry * direction[axis];
-      const double floor = std::floor(start.high);
       start_high_[axis] = start.high;
       start_low_[axis] = start.low;
       direction_[axis] = direction[axis];
       moves_[axis] = direction[axis] != 0 ? 1 : 0;
       inverse_[axis] = direction[axis] != 0 ? 1 / direction[axis] : 0;
       exit_[axis] = direction[axis] > 0 ? 1 : 0;
-      // A sum just below an integer may have it as its high part.
-      cell_[axis] = std::clamp(floor == start.high && start.low < 0 ? floor - 1 : floor, -1.0,
-                               static_cast<double>(size[axis] - 1));
+      cell_[axis] = std::clamp(floor(start), -1.0, static_cast<double>(size[axis] - 1));
     }
     enter_cells();
     finish(0.0, 0);
@@ -80,10 +85,16 @@ class CellWalk {
     enter_cells();
   }
 
-  [[nodiscard]] double begin(std::size_t axis) const { return begin_[axis]; }
-  [[nodiscard]] double end(std::size_t axis) const { return end_[axis]; }
-  /// Of the voxel at the low end of the cell; -1 in the clamped half before the first one.
-  [[nodiscard]] std::int64_t cell(std::size_t axis) const { return static_cast<std::int64_t>(cell_[axis]); }
+  /// The current piece.
+  [[nodiscard]] CellSegment<double> segment() const {
+    CellSegment<double> result{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      result.cell[axis] = static_cast<std::int64_t>(cell_[axis]);
+      result.begin[axis] = begin_[axis];
+      result.end[axis] = end_[axis];
+    }
+    return result;
+  }
 
  private:
   [[nodiscard]] DoubleDouble crossing_of(std::size_t axis) const { return {crossing_high_[axis], crossing_low_[axis]}; }
@@ -105,8 +116,8 @@ class CellWalk {
     }
   }
 
-  Lanes start_high_, start_low_, direction_, inverse_, moves_, exit_, cell_;
-  Lanes local_high_, local_low_, crossing_high_, crossing_low_, crosses_, begin_, end_;
+  PerAxis start_high_, start_low_, direction_, inverse_, moves_, exit_, cell_;
+  PerAxis local_high_, local_low_, crossing_high_, crossing_low_, crosses_, begin_, end_;
 };
 
 /// The stretch of the line origin + t direction inside [-1/2, size - 1/2] on every axis; none where its end is not

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/chain.hpp"
+#include "reference/certified.hpp"
 
 #include <vector>
 
@@ -21,5 +22,12 @@ Bernstein<largest_degree> bernstein_from_powers(const std::vector<double>& coeff
 /// piece, everything is finite and nothing overflows.
 Chain<largest_degree> piecewise_polynomial(const std::vector<double>& breaks,
                                            const std::vector<std::vector<double>>& coefficients);
+
+/// How far the chain of these breaks and coefficients may be from the polynomials of the binary64 numbers: the largest
+/// difference of its Bernstein coefficients and those of the exact lengths, computed in 106 bits. Zero for constants.
+/// chain(t) may be read with u = (t - start) / length, and with u from 0 to 1 between start and end_of.
+SignalError piecewise_polynomial_error(const std::vector<double>& breaks,
+                                       const std::vector<std::vector<double>>& coefficients,
+                                       const Chain<largest_degree>& chain);
 
 }  // namespace raytruth

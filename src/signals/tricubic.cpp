@@ -2,28 +2,33 @@
 
 #include "core/dispatch.hpp"
 #include "signals/cell_walk.hpp"
+#include "signals/tracing_error.hpp"
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace raytruth {
 
 namespace {
 
-using Matrix = std::array<std::array<double, 4>, 4>;
-using Tensor = std::array<double, 64>;  ///< index 16 k + 4 j + i
+template <class Real>
+using Matrix = std::array<std::array<Real, 4>, 4>;
+template <class Real>
+using Tensor = std::array<Real, 64>;  ///< index 16 k + 4 j + i
 
 constexpr std::array<double, 4> binomial_3{1, 3, 3, 1};
 constexpr std::array<double, 10> binomial_9{1, 9, 36, 84, 126, 126, 84, 36, 9, 1};
 
 /// From the Bernstein coefficients of a cubic on [0, 1] to those on its part [p, q], as [row][column]: row r holds the
 /// weights of the polar form at 3 - r times p and r times q, all of them positive.
-Matrix restriction(double p, double q) {
-  const auto polar = [](double a, double b, double c) {
-    const double a1 = 1 - a;
-    const double b1 = 1 - b;
-    const double c1 = 1 - c;
+template <class Real>
+Matrix<Real> restriction(const Real& p, const Real& q) {
+  const auto polar = [](const Real& a, const Real& b, const Real& c) {
+    const Real a1 = 1 - a;
+    const Real b1 = 1 - b;
+    const Real c1 = 1 - c;
     return std::array{a1 * b1 * c1, a * b1 * c1 + a1 * b * c1 + a1 * b1 * c, a * b * c1 + a * b1 * c + a1 * b * c,
                       a * b * c};
   };
@@ -31,9 +36,10 @@ Matrix restriction(double p, double q) {
 }
 
 /// From the four voxels around a cell to the Bernstein coefficients on its part [begin, end]: [coefficient][voxel].
-Matrix cell_matrix(const Matrix& kernel, double begin, double end) {
-  const Matrix part = restriction(begin, end);
-  Matrix matrix{};
+template <class Real>
+Matrix<Real> cell_matrix(const Matrix<Real>& kernel, const Real& begin, const Real& end) {
+  const Matrix<Real> part = restriction(begin, end);
+  Matrix<Real> matrix{};
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t k = 0; k < 4; ++k)
       for (std::size_t voxel = 0; voxel < 4; ++voxel) matrix[i][voxel] += part[i][k] * kernel[k][voxel];
@@ -41,53 +47,64 @@ Matrix cell_matrix(const Matrix& kernel, double begin, double end) {
 }
 
 /// Voxels to Bernstein coefficients along each axis in turn; the innermost loops run over what lies side by side.
-Tensor contract(const Tensor& voxels, const Matrix& x, const Matrix& y, const Matrix& z) {
-  Tensor by_z{};
+template <class Real>
+Tensor<Real> contract(const Tensor<double>& voxels, const Matrix<Real>& x, const Matrix<Real>& y,
+                      const Matrix<Real>& z) {
+  Tensor<Real> by_z{};
   for (std::size_t k = 0; k < 4; ++k)
     for (std::size_t voxel = 0; voxel < 4; ++voxel)
       for (std::size_t rest = 0; rest < 16; ++rest) by_z[16 * k + rest] += z[k][voxel] * voxels[16 * voxel + rest];
-  Tensor by_y{};
+  Tensor<Real> by_y{};
   for (std::size_t k = 0; k < 4; ++k)
     for (std::size_t j = 0; j < 4; ++j)
       for (std::size_t voxel = 0; voxel < 4; ++voxel)
         for (std::size_t i = 0; i < 4; ++i) by_y[16 * k + 4 * j + i] += y[j][voxel] * by_z[16 * k + 4 * voxel + i];
-  Matrix x_by_voxel{};
+  Matrix<Real> x_by_voxel{};
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t voxel = 0; voxel < 4; ++voxel) x_by_voxel[voxel][i] = x[i][voxel];
-  Tensor result{};
+  Tensor<Real> result{};
   for (std::size_t row = 0; row < 16; ++row)
     for (std::size_t voxel = 0; voxel < 4; ++voxel)
       for (std::size_t i = 0; i < 4; ++i) result[4 * row + i] += x_by_voxel[voxel][i] * by_y[4 * row + voxel];
   return result;
 }
 
-/// The polynomial on the segment through the current cell; see the header for the formula.
-Bernstein<9> cell_polynomial(const Grid& grid, const Matrix& kernel, const CellWalk& walk) {
+/// The polynomial on the segment of a cell between two local points; see the header for the formula.
+template <class Real>
+Bernstein<9, Real> cell_polynomial(const Grid& grid, const Matrix<Real>& kernel, const CellSegment<Real>& segment) {
   std::array<std::array<std::int64_t, 4>, 3> offset{};
   std::int64_t stride = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::int64_t voxel = 0; voxel < 4; ++voxel)
       offset[axis][static_cast<std::size_t>(voxel)] =
-          std::clamp(walk.cell(axis) - 1 + voxel, std::int64_t{0}, grid.size[axis] - 1) * stride;
+          std::clamp(segment.cell[axis] - 1 + voxel, std::int64_t{0}, grid.size[axis] - 1) * stride;
     stride *= grid.size[axis];
   }
-  Tensor voxels{};
+  Tensor<double> voxels{};
   for (std::size_t k = 0; k < 4; ++k)
     for (std::size_t j = 0; j < 4; ++j) {
       const double* const row = grid.values.data() + offset[2][k] + offset[1][j];
       for (std::size_t i = 0; i < 4; ++i) voxels[16 * k + 4 * j + i] = row[offset[0][i]];
     }
-  const auto matrix = [&](std::size_t axis) { return cell_matrix(kernel, walk.begin(axis), walk.end(axis)); };
-  const Tensor tensor = contract(voxels, matrix(0), matrix(1), matrix(2));
+  const auto matrix = [&](std::size_t axis) { return cell_matrix(kernel, segment.begin[axis], segment.end[axis]); };
+  const Tensor<Real> tensor = contract(voxels, matrix(0), matrix(1), matrix(2));
 
-  Bernstein<9> polynomial;
+  Bernstein<9, Real> polynomial;
   for (std::size_t k = 0; k < 4; ++k)
     for (std::size_t j = 0; j < 4; ++j)
       for (std::size_t i = 0; i < 4; ++i)
         polynomial.coefficients[i + j + k] +=
             binomial_3[i] * binomial_3[j] * binomial_3[k] * tensor[16 * k + 4 * j + i];
-  for (std::size_t m = 0; m < 10; ++m) polynomial.coefficients[m] /= binomial_9[m];
+  for (std::size_t m = 0; m < 10; ++m) polynomial.coefficients[m] = polynomial.coefficients[m] / binomial_9[m];
   return polynomial;
+}
+
+template <class Real>
+Matrix<Real> kernel_matrix(CubicKernel kernel) {
+  Matrix<Real> matrix{};
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t voxel = 0; voxel < 4; ++voxel) matrix[i][voxel] = kernel_coefficient<Real>(kernel, i, voxel);
+  return matrix;
 }
 
 /// Solves the system of `bspline_coefficients` in place on one line: elimination without pivoting, the matrix being
@@ -110,10 +127,23 @@ void prefilter_line(double* values, std::int64_t count, std::int64_t stride, std
 
 RAYTRUTH_DISPATCH
 void trace_tricubic(const Grid& grid, CubicKernel kernel, const Ray& ray, Chain<9>& chain) {
-  Matrix matrix{};
-  for (std::size_t i = 0; i < 4; ++i)
-    for (std::size_t voxel = 0; voxel < 4; ++voxel) matrix[i][voxel] = kernel_coefficient<double>(kernel, i, voxel);
-  trace_cells(grid.size, ray, chain, [&](const CellWalk& walk) { return cell_polynomial(grid, matrix, walk); });
+  const auto matrix = kernel_matrix<double>(kernel);
+  trace_cells(grid.size, ray, chain,
+              [&](const CellWalk& walk) { return cell_polynomial(grid, matrix, walk.segment()); });
+}
+
+RAYTRUTH_DISPATCH
+SignalError tricubic_error(const Grid& grid, CubicKernel kernel, const Ray& ray, const Chain<9>& chain,
+                           double coefficient_error) {
+  const auto matrix = kernel_matrix<DoubleDouble>(kernel);
+  // The derivative of a B-spline is a mean of differences. Bernstein coefficients of a Catmull-Rom cubic are sums of
+  // voxels with weights of magnitude 4/3 in all, those of its derivative sums of differences with 3: (4/3)^2 3.
+  const Reconstruction tricubic{.margin = 1, .slope = kernel == CubicKernel::bspline ? 1 : 16.0 / 3};
+  SignalError error = tracing_error(grid, ray, chain, tricubic, [&](const CellSegment<DoubleDouble>& segment) {
+    return cell_polynomial(grid, matrix, segment);
+  });
+  for (double& of_piece : error.of_pieces) of_piece += coefficient_error;
+  return error;
 }
 
 Grid bspline_coefficients(const Grid& grid) {
@@ -130,6 +160,36 @@ Grid bspline_coefficients(const Grid& grid) {
     });
   }
   return result;
+}
+
+double prefilter_error(const Grid& voxels, const Grid& coefficients) {
+  // In 216ths, so that all weights are powers of 2; the sums' rounding by compensated summation (T. Ogita, S. M. Rump,
+  // S. Oishi, Accurate sum and dot product, 2005, proposition 4.5).
+  constexpr std::array<double, 3> weight{1, 4, 1};
+  std::vector<double> of_slice(static_cast<std::size_t>(voxels.size[2]));
+  tbb::parallel_for(std::int64_t{0}, voxels.size[2], [&](std::int64_t k) {
+    double& worst = of_slice[static_cast<std::size_t>(k)];
+    const auto neighbour = [&](std::int64_t i, std::size_t step, std::size_t axis) {
+      return std::clamp(i + static_cast<std::int64_t>(step) - 1, std::int64_t{0}, voxels.size[axis] - 1);
+    };
+    for (std::int64_t j = 0; j < voxels.size[1]; ++j)
+      for (std::int64_t i = 0; i < voxels.size[0]; ++i) {
+        const DoubleDouble target = two_product(-216.0, voxels.at(i, j, k));
+        DoubleDouble sum = target;
+        double magnitude = std::abs(target.high);
+        for (std::size_t z = 0; z < 3; ++z)
+          for (std::size_t y = 0; y < 3; ++y)
+            for (std::size_t x = 0; x < 3; ++x) {
+              const double term = weight[x] * weight[y] * weight[z] *
+                                  coefficients.at(neighbour(i, x, 0), neighbour(j, y, 1), neighbour(k, z, 2));
+              const DoubleDouble next = two_sum(sum.high, term);
+              sum = {next.high, sum.low + next.low};
+              magnitude += std::abs(term);
+            }
+        worst = std::max(worst, std::abs(sum.high + sum.low) + 0x1p-94 * magnitude);
+      }
+  });
+  return 27.0 / 216 * (1 + 0x1p-50) * *std::max_element(of_slice.begin(), of_slice.end());
 }
 
 }  // namespace raytruth

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/chain.hpp"
+#include "reference/certified.hpp"
 #include "signals/ray.hpp"
 #include "volume/grid.hpp"
 
@@ -22,7 +23,7 @@ Real kernel_coefficient(CubicKernel kernel, std::size_t coefficient, std::size_t
   // Sixths. B-spline: C. de Boor, A practical guide to splines; Catmull-Rom: Keys 1981 with a = -1/2.
   constexpr std::array<std::array<int, 4>, 4> bspline{{{1, 4, 1, 0}, {0, 4, 2, 0}, {0, 2, 4, 0}, {0, 1, 4, 1}}};
   constexpr std::array<std::array<int, 4>, 4> catmull_rom{{{0, 6, 0, 0}, {-1, 6, 1, 0}, {0, 1, 6, -1}, {0, 0, 6, 0}}};
-  return Real((kernel == CubicKernel::bspline ? bspline : catmull_rom)[coefficient][voxel]) / Real(6);
+  return Real((kernel == CubicKernel::bspline ? bspline : catmull_rom)[coefficient][voxel]) / 6;
 }
 
 /// The scalar along a ray through a tricubic reconstruction, exactly: a chain of polynomials of degree 9 with a break
@@ -36,9 +37,19 @@ Real kernel_coefficient(CubicKernel kernel, std::size_t coefficient, std::size_t
 /// `trace_trilinear`; for an interpolating B-spline pass the grid of `bspline_coefficients`.
 void trace_tricubic(const Grid& grid, CubicKernel kernel, const Ray& ray, Chain<9>& chain);
 
+/// As `trilinear_error`. `coefficient_error` bounds the error of each voxel of `grid`, for B-spline coefficients that
+/// were made from others: `prefilter_error`. B-splines being means, the signal is off by no more.
+SignalError tricubic_error(const Grid& grid, CubicKernel kernel, const Ray& ray, const Chain<9>& chain,
+                           double coefficient_error = 0);
+
 /// The coefficients of the cubic B-spline that passes through the voxels of a clamped grid: on every line the
 /// tridiagonal system (c_{i-1} + 4 c_i + c_{i+1}) / 6 = v_i with c_{-1} = c_0, c_n = c_{n-1}, axis after axis (M.
 /// Unser, Splines: a perfect fit for signal and image processing, 1999).
 Grid bspline_coefficients(const Grid& grid);
+
+/// Bounds how far any of the `coefficients` is from those of the exact B-spline through `voxels`: the largest residual
+/// |v - A_x A_y A_z c| of the systems above times 27, for |(A^-1 r)_i| <= 3 max |r|: where |x_i| is largest,
+/// 6 |r_i| >= (4 - 1 - 1) |x_i|, or (5 - 1) |x_i| at the ends.
+double prefilter_error(const Grid& voxels, const Grid& coefficients);
 
 }  // namespace raytruth

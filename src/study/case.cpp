@@ -2,7 +2,8 @@
 
 #include "catalogue.hpp"
 #include "measures/signal_error.hpp"
-#include "signals/analytic.hpp"
+#include "reference/ray_integral.hpp"
+#include "schemes/scheme_integral.hpp"
 #include "signals/marschner_lobb.hpp"
 #include "signals/tricubic.hpp"
 #include "signals/trilinear.hpp"
@@ -25,7 +26,9 @@ using Json = nlohmann::ordered_json;
 // Differences, and parabolas through values at uneven distances, stay within binary64.
 constexpr double largest_value = 0x1p900;
 
-constexpr std::string_view why_no_reference = "the certified reference comes with a later version of raytruth";
+constexpr std::string_view why_no_integral = "the case states no transfer function";
+constexpr std::string_view why_not_finite = "its error is beyond the range of binary64";
+constexpr std::string_view why_not_converged = "error_bound holds, but is wider than is asked for";
 
 std::array<double, 3> read_vector(const JsonReader& json) {
   const auto numbers = json.numbers(3);
@@ -50,7 +53,7 @@ Grid read_inline_grid(const JsonReader& json) {
   return grid;
 }
 
-Chain<largest_degree> read_piecewise_polynomial(const JsonReader& json) {
+void read_piecewise_polynomial(const JsonReader& json, Case& ray) {
   json.only({"kind", "breaks", "coefficients"});
   const auto breaks = json.at("breaks").numbers();
   const auto places = json.at("breaks").items(2);
@@ -60,7 +63,9 @@ Chain<largest_degree> read_piecewise_polynomial(const JsonReader& json) {
   std::vector<std::vector<double>> coefficients;
   for (const JsonReader& piece : json.at("coefficients").items())
     coefficients.push_back(piece.numbers(largest_degree + 1));
-  return json.at("coefficients").blame_for([&] { return piecewise_polynomial(breaks, coefficients); });
+  auto chain = json.at("coefficients").blame_for([&] { return piecewise_polynomial(breaks, coefficients); });
+  if (ray.transfer) ray.signal_error = piecewise_polynomial_error(breaks, coefficients, chain);
+  ray.signal = std::move(chain);
 }
 
 /// Its origin, direction and length; the direction is checked.
@@ -71,24 +76,27 @@ Ray read_ray(const JsonReader& json) {
   return ray;
 }
 
-Chain<largest_degree> read_marschner_lobb(const JsonReader& json) {
+void read_marschner_lobb(const JsonReader& json, Case& ray) {
   json.only({"kind", "origin", "direction", "length"});
-  const Ray ray = read_ray(json);
-  return json.at("origin").blame_for([&] { return trace_marschner_lobb(ray); });
+  const MarschnerLobbRay formula{read_ray(json)};
+  ray.signal = json.at("origin").blame_for([&] { return trace_marschner_lobb(formula.ray); });
+  ray.formula = formula;
 }
 
-Chain<largest_degree> read_analytic(const JsonReader& json) {
+void read_analytic(const JsonReader& json, Case& ray) {
   json.only({"kind", "name"});
   std::vector<std::string_view> names;
   for (const AnalyticSignal& signal : analytic_signals()) names.push_back(signal.name);
   const std::string name = json.at("name").word(names);
-  return expand(*std::find_if(analytic_signals().begin(), analytic_signals().end(),
-                              [&name](const AnalyticSignal& signal) { return signal.name == name; }));
+  const AnalyticSignal& formula = *std::find_if(analytic_signals().begin(), analytic_signals().end(),
+                                                [&name](const AnalyticSignal& signal) { return signal.name == name; });
+  ray.signal = expand(formula);
+  ray.formula = formula;
 }
 
 std::vector<std::string> read_schemes(const JsonReader& json) {
   std::vector<std::string_view> allowed{"reference"};
-  catalogue::for_each_scheme([&allowed]<class S>() { allowed.push_back(S::info.name); });
+  for (const IntegralScheme& scheme : catalogue::integral_schemes()) allowed.push_back(scheme.name);
   std::vector<std::string> schemes;
   for (const JsonReader& item : json.items()) {
     const std::string scheme = item.word(allowed);
@@ -108,6 +116,8 @@ void check_values(const JsonReader& json, const Chain<Degree>& signal) {
 
 Json refused(std::string_view why) { return {{"status", "refused"}, {"why", why}}; }
 
+bool is_refused(const Json& answer) { return answer.contains("status") && answer["status"] == "refused"; }
+
 template <int Degree>
 void take_samples(const Chain<Degree>& signal, const Sampling& sampling, Samples<double>& samples) {
   if (sampling.step) return sample_constant(signal, *sampling.step, samples);
@@ -117,8 +127,63 @@ void take_samples(const Chain<Degree>& signal, const Sampling& sampling, Samples
   sample_cells(signal, samples);
 }
 
+Json color_json(const Vector3<double>& color) { return {color[0], color[1], color[2]}; }
+
+bool is_finite(const Vector3<double>& color, double opacity) {
+  return color.isFinite().all() && std::isfinite(opacity);
+}
+
+/// The certified answer to the case.
+template <int Degree>
+Certified truth_of(const Case& ray, const Chain<Degree>& signal) {
+  if (const auto* const marschner_lobb = std::get_if<MarschnerLobbRay>(&ray.formula))
+    return arb_integral(*marschner_lobb, *ray.transfer, ray.emission);
+  if (const auto* const analytic = std::get_if<AnalyticSignal>(&ray.formula))
+    return arb_integral(*analytic, *ray.transfer, ray.emission);
+  return RayIntegral(*ray.transfer, ray.emission)(signal, ray.signal_error);
+}
+
+void add_status(Json& answer, Status status) {
+  if (status == Status::converged) return;
+  answer["status"] = "not_converged";
+  answer["why"] = why_not_converged;
+}
+
+Json truth_json(const Certified& truth) {
+  if (!is_finite(truth.color, truth.opacity) || !std::isfinite(truth.radius)) return refused(why_not_finite);
+  Json answer{{"color", color_json(truth.color)}, {"opacity", truth.opacity}, {"error_bound", truth.radius}};
+  add_status(answer, truth.status);
+  return answer;
+}
+
+Json difference_json(const Difference& difference) {
+  return {{"color", color_json(difference.color)}, {"opacity", difference.opacity}};
+}
+
+/// What the scheme makes of colour and opacity: in binary64, and in the budget what binary32 adds.
+Json integral_json(const ErrorBudget& budget, const Certified& truth) {
+  const Outcome<>& outcome = budget.outcome;
+  if (!outcome.refusal.empty()) return refused(outcome.refusal);
+  const Difference error{outcome.color - truth.color, outcome.opacity - truth.opacity};
+  if (!is_finite(error.color, error.opacity) || !std::isfinite(budget.radius)) return refused(why_not_finite);
+  Json answer{
+      {"color", color_json(outcome.color)},
+      {"opacity", outcome.opacity},
+      {"color_error", color_json(error.color)},
+      {"opacity_error", error.opacity},
+      {"error_bound", budget.radius},
+      {"budget", {{"signal", difference_json(budget.signal)}, {"quadrature", difference_json(budget.quadrature)}}},
+      {"samples", outcome.fetches},
+      {"lookups", outcome.lookups},
+      {"composites", outcome.composites}};
+  if (budget.round32) answer["budget"]["round32"] = difference_json(*budget.round32);
+  add_status(answer, outcome.status);
+  return answer;
+}
+
+/// How far the scheme's approximate signal is from the signal.
 template <Scheme S, int Degree>
-Json evaluate_scheme(const Chain<Degree>& signal, const Samples<double>& samples) {
+Json signal_json(const Chain<Degree>& signal, const Samples<double>& samples) {
   if (const auto why = refusal<S>(samples); !why.empty()) return refused(why);
   Chain<3> approximation;
   approximate<S>(signal, samples, approximation);
@@ -128,7 +193,7 @@ Json evaluate_scheme(const Chain<Degree>& signal, const Samples<double>& samples
   Json answer{{"xi", error}, {"xi_per_length", nullptr}, {"xi_max", error_max}, {"xi_max_per_length", nullptr}};
   if (length > 0) {
     if (!std::isfinite(error) || !std::isfinite(error / length) || !std::isfinite(error_max / length))
-      return refused("its error is beyond the range of binary64");
+      return refused(why_not_finite);
     answer["xi_per_length"] = error / length;
     answer["xi_max_per_length"] = error_max / length;
   } else {
@@ -137,6 +202,37 @@ Json evaluate_scheme(const Chain<Degree>& signal, const Samples<double>& samples
   answer["samples"] = fetches<S>(samples);
   return answer;
 }
+
+/// The schemes of a case, one after the other: what they make of the signal, and of colour and opacity.
+template <int Degree>
+class SchemeAnswers {
+ public:
+  SchemeAnswers(const Case& ray, const Chain<Degree>& signal, const Certified* truth) : signal_(signal), truth_(truth) {
+    ray.json.at("sampling").blame_for([&] { take_samples(signal, ray.sampling, samples_); });
+    if (truth != nullptr) integrate_.emplace(*ray.transfer, ray.emission);
+  }
+
+  Json operator()(const std::string& name) {
+    const IntegralScheme& scheme = *catalogue::find_integral_scheme(name);
+    Json answer = Json::object();
+    if (truth_ != nullptr) answer = integral_json(integrate_->budget(scheme, signal_, samples_, *truth_), *truth_);
+    if (is_refused(answer)) return answer;
+    catalogue::visit_scheme(name, [&]<class S>() {
+      Json of_signal = signal_json<S>(signal_, samples_);
+      if (is_refused(of_signal))
+        answer = std::move(of_signal);
+      else
+        answer.update(of_signal);
+    });
+    return answer.empty() ? refused(why_no_integral) : answer;
+  }
+
+ private:
+  const Chain<Degree>& signal_;
+  const Certified* truth_;  ///< null: there is no transfer function
+  Samples<double> samples_;
+  std::optional<SchemeIntegral> integrate_;
+};
 
 }  // namespace
 
@@ -147,45 +243,55 @@ Case CaseReader::read(const JsonReader& json) {
   std::transform(catalogue::signals.begin(), catalogue::signals.end(), kinds.begin(),
                  [](const catalogue::Entry& entry) { return entry.name; });
   const std::string kind = signal.at("kind").word(kinds);
-  Case result{json, {}, read_sampling(json.at("sampling")), read_schemes(json.at("schemes"))};
-  if (const auto transfer = json.find("transfer_function")) read_transfer_function(*transfer, warnings_);
-  if (const auto emission = json.find("emission")) emission->word({"associated", "plain"});
+  Case ray{json, read_sampling(json.at("sampling")), read_schemes(json.at("schemes")), std::nullopt};
+  if (const auto transfer = json.find("transfer_function")) ray.transfer = read_transfer_function(*transfer, warnings_);
+  if (const auto emission = json.find("emission"); emission && emission->word({"associated", "plain"}) == "plain")
+    ray.emission = Emission::plain;
+  // It refuses numbers that it cannot calculate with.
+  if (ray.transfer) json.at("transfer_function").blame_for([&] { return RayIntegral(*ray.transfer, ray.emission); });
   if (kind == "trilinear")
-    result.signal = read_trilinear(signal);
+    read_trilinear(signal, ray);
   else if (kind == "tricubic")
-    result.signal = read_tricubic(signal);
+    read_tricubic(signal, ray);
   else if (kind == "marschner_lobb")
-    result.signal = read_marschner_lobb(signal);
+    read_marschner_lobb(signal, ray);
   else if (kind == "analytic")
-    result.signal = read_analytic(signal);
+    read_analytic(signal, ray);
   else
-    result.signal = read_piecewise_polynomial(signal);
-  std::visit([&signal](const auto& chain) { check_values(signal, chain); }, result.signal);
-  return result;
+    read_piecewise_polynomial(signal, ray);
+  std::visit([&signal](const auto& chain) { check_values(signal, chain); }, ray.signal);
+  return ray;
 }
 
-Chain<3> CaseReader::read_trilinear(const JsonReader& json) {
+void CaseReader::read_trilinear(const JsonReader& json, Case& result) {
   json.only({"kind", "volume", "repair", "origin", "direction", "length"});
   const Ray ray = read_ray(json);
   const Grid& grid = read_volume_of(json);
-  return json.at("origin").blame_for([&] { return trace_trilinear(grid, ray); });
+  auto chain = json.at("origin").blame_for([&] { return trace_trilinear(grid, ray); });
+  if (result.transfer) result.signal_error = trilinear_error(grid, ray, chain);
+  result.signal = std::move(chain);
 }
 
-Chain<largest_degree> CaseReader::read_tricubic(const JsonReader& json) {
+void CaseReader::read_tricubic(const JsonReader& json, Case& result) {
   json.only({"kind", "volume", "repair", "origin", "direction", "length", "kernel", "prefilter"});
   const Ray ray = read_ray(json);
   const bool is_bspline = json.at("kernel").word({"bspline", "catmull_rom"}) == "bspline";
+  const auto kernel = is_bspline ? CubicKernel::bspline : CubicKernel::catmull_rom;
   const auto prefilter = json.find("prefilter");
   const bool is_prefiltered = prefilter && prefilter->boolean();
   if (is_prefiltered && !is_bspline) prefilter->refuse_value("false: catmull_rom passes through its voxels as it is;");
-  const Grid& grid = read_volume_of(json);
+  const Grid& voxels = read_volume_of(json);
+  const Grid coefficients = is_prefiltered ? bspline_coefficients(voxels) : Grid{};
+  const Grid& grid = is_prefiltered ? coefficients : voxels;
   Chain<largest_degree> chain;
   json.at("origin").blame_for([&] {
-    trace_tricubic(is_prefiltered ? bspline_coefficients(grid) : grid,
-                   is_bspline ? CubicKernel::bspline : CubicKernel::catmull_rom, ray, chain);
+    trace_tricubic(grid, kernel, ray, chain);
     return 0;
   });
-  return chain;
+  if (result.transfer)
+    result.signal_error =
+        tricubic_error(grid, kernel, ray, chain, is_prefiltered ? prefilter_error(voxels, grid) : 0.0);
+  result.signal = std::move(chain);
 }
 
 const Grid& CaseReader::read_volume_of(const JsonReader& signal) {
@@ -209,13 +315,15 @@ const Grid& CaseReader::read_volume_of(const JsonReader& signal) {
 Json evaluate(const Case& ray) {
   return std::visit(
       [&ray](const auto& signal) -> Json {
-        Samples<double> samples;
-        ray.json.at("sampling").blame_for([&] { take_samples(signal, ray.sampling, samples); });
+        std::optional<Certified> truth;
+        if (ray.transfer) truth = truth_of(ray, signal);
+        SchemeAnswers answer_of(ray, signal, truth ? &*truth : nullptr);
         Json schemes = Json::object();
         for (const std::string& scheme : ray.schemes)
-          catalogue::visit_scheme(scheme,
-                                  [&]<class S>() { schemes[S::info.name] = evaluate_scheme<S>(signal, samples); });
-        return {{"length", signal.length()}, {"reference", refused(why_no_reference)}, {"schemes", std::move(schemes)}};
+          if (scheme != "reference") schemes[scheme] = answer_of(scheme);
+        return {{"length", signal.length()},
+                {"reference", truth ? truth_json(*truth) : refused(why_no_integral)},
+                {"schemes", std::move(schemes)}};
       },
       ray.signal);
 }

@@ -1,13 +1,18 @@
 #pragma once
 
 #include "core/chain.hpp"
+#include "reference/arb_integral.hpp"
+#include "reference/certified.hpp"
+#include "signals/analytic.hpp"
 #include "signals/piecewise_polynomial.hpp"
 #include "study/experiment.hpp"
 #include "study/json_reader.hpp"
+#include "transfer/piecewise_linear.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -18,9 +23,13 @@ namespace raytruth {
 /// A ray for `eval`; experiments/schemas/case.json describes its JSON.
 struct Case {
   JsonReader json;
-  std::variant<Chain<3>, Chain<largest_degree>> signal;
   Sampling sampling;
   std::vector<std::string> schemes;  ///< of the catalogue, or "reference"
+  std::optional<PiecewiseLinear> transfer;
+  Emission emission = Emission::associated;
+  std::variant<Chain<3>, Chain<largest_degree>> signal = {};
+  SignalError signal_error = {};                                                ///< of the chain
+  std::variant<std::monostate, MarschnerLobbRay, AnalyticSignal> formula = {};  ///< that the chain only approximates
 };
 
 /// Reads cases one after the other; keeps the volume that was read last, for the cases of a list often share it.
@@ -35,8 +44,8 @@ class CaseReader {
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
-  Chain<3> read_trilinear(const JsonReader& json);
-  Chain<largest_degree> read_tricubic(const JsonReader& json);
+  void read_trilinear(const JsonReader& json, Case& ray);
+  void read_tricubic(const JsonReader& json, Case& ray);
   const Grid& read_volume_of(const JsonReader& signal);
 
   std::vector<std::filesystem::path> folders_;

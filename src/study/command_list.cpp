@@ -25,14 +25,19 @@ Json entries_json(const Entries& entries) {
 
 Json schemes_json() {
   Json list = Json::array();
-  catalogue::for_each_scheme([&list]<class S>() {
-    list.push_back({{"name", S::info.name},
-                    {"summary", S::info.summary},
-                    {"source", S::info.source},
+  for (const IntegralScheme& scheme : catalogue::integral_schemes()) {
+    Json& entry = list.emplace_back(Json{{"name", scheme.name},
+                                         {"summary", scheme.summary},
+                                         {"source", scheme.source},
+                                         {"family", family(scheme)},
+                                         {"color_order", scheme.order.color},
+                                         {"opacity_order", scheme.order.opacity}});
+    catalogue::visit_scheme(scheme.name, [&entry]<class S>() {
+      entry.update({{"signal_order", S::info.order},
                     {"exact_degree", S::info.exact_degree},
-                    {"order", S::info.order},
                     {"extra_fetches_per_interval", S::info.extra_fetches_per_interval}});
-  });
+    });
+  }
   return list;
 }
 

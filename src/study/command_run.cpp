@@ -78,7 +78,12 @@ Json rows_json(const Measure& measure, const std::string& field, std::vector<Row
   return json;
 }
 
-/// The work of one experiment, unit by unit; a unit is a measure of one field, or a measure alone.
+/// Of a measure alone.
+std::int64_t blocks_of(const Measure& measure, const JsonReader& options) {
+  return measure.blocks != nullptr ? measure.blocks(options) : 1;
+}
+
+/// The work of one experiment, unit by unit; a unit is a measure of one field, or a block of a measure alone.
 class UnitRunner {
  public:
   UnitRunner(const Experiment& experiment, const std::vector<std::filesystem::path>& folders, Journal& journal)
@@ -103,9 +108,14 @@ class UnitRunner {
       });
     }
     for_each_measure(false, [&](const Measure& measure, const JsonReader& options) {
-      finish(std::string(measure.name), [&]() -> std::optional<Json> {
-        return Json{{"rows", rows_json(measure, {}, measure.rows(experiment_, options, Field{}))}};
-      });
+      for (std::int64_t block = 0; block < blocks_of(measure, options); ++block) {
+        const std::string suffix = measure.blocks != nullptr ? fmt::format("/{}", block) : "";
+        finish(std::string(measure.name) + suffix, [&]() -> std::optional<Json> {
+          auto rows = measure.blocks != nullptr ? measure.block_rows(experiment_, options, block)
+                                                : measure.rows(experiment_, options, Field{});
+          return Json{{"rows", rows_json(measure, {}, std::move(rows))}};
+        });
+      }
     });
     return std::move(findings_);
   }
@@ -121,8 +131,10 @@ class UnitRunner {
 
   static std::size_t count_units(const Experiment& experiment) {
     std::size_t count = 0;
-    for (const JsonReader& options : experiment.measures)
-      count += measure_of(options).of_fields ? experiment.fields.size() : 1;
+    for (const JsonReader& options : experiment.measures) {
+      const Measure& measure = measure_of(options);
+      count += measure.of_fields ? experiment.fields.size() : static_cast<std::size_t>(blocks_of(measure, options));
+    }
     return count;
   }
 
@@ -172,6 +184,8 @@ Json run_experiment(const Experiment& experiment, const RunOptions& options, con
   if (options.resume)
     if (auto finished = finished_result(file, run)) return *finished;
 
+  std::optional<GlIdentity> gl;  // before hours of work, for it may be missing
+  if (uses_gl(experiment)) gl = open_gl(experiment.gl)->identity();
   const auto start = std::chrono::system_clock::now();
   const auto clock_start = std::chrono::steady_clock::now();
   Journal journal = file.empty() ? Journal() : Journal(file, run, options.resume);
@@ -186,7 +200,8 @@ Json run_experiment(const Experiment& experiment, const RunOptions& options, con
       .threads = static_cast<int>(threads),
       .seconds = std::round(seconds * 1000) / 1000,
       .started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(start))),
-      .resumed = is_resumed};
+      .resumed = is_resumed,
+      .gl = gl};
   Json result = make_result(experiment, provenance, findings.fields, findings.rows);
   if (!file.empty()) write_whole(file, result_text(result));
   journal.remove();
@@ -214,7 +229,8 @@ int run_experiments(const RunOptions& options) {
   if (!options.folder && options.resume) throw InputError("run: found --resume without -o; -o DIR is needed with it");
   std::vector<Experiment> experiments;
   for (const std::string& path : options.experiments) {
-    Experiment experiment = read_experiment(path, options.profile, options.seed);
+    Experiment experiment = read_experiment(path, options.profile, options.seed, options.gl);
+    for (const std::string& warning : experiment.warnings) say(warning);
     for (const Experiment& other : experiments)
       if (other.name == experiment.name) experiment.json.at("name").refuse_value("one experiment of each name");
     experiments.push_back(std::move(experiment));

@@ -14,6 +14,7 @@ struct RunOptions {
   int threads = 0;  ///< 0: all cores
   std::string profile = "full";
   std::optional<std::int64_t> seed;
+  std::optional<std::string> gl;
   bool check = false;
   bool resume = false;
   std::string data;
@@ -56,5 +57,18 @@ struct PlotOptions {
   std::string format = "svg";
 };
 int plot_results(const PlotOptions& options);
+
+struct VectorsOptions {
+  std::optional<std::string> file;  ///< none: standard output
+  std::int64_t seed = 1;
+};
+int write_vectors(const VectorsOptions& options);
+
+struct ScoreOptions {
+  std::string vectors;
+  std::string answers;
+  bool json = false;
+};
+int score_answers(const ScoreOptions& options);
 
 }  // namespace raytruth

@@ -1,9 +1,11 @@
 #include "study/experiment.hpp"
 
 #include "catalogue.hpp"
+#include "reference/ray_integral.hpp"
 #include "signals/marschner_lobb.hpp"
 #include "signals/random_field.hpp"
 #include "study/measure.hpp"
+#include "study/read_transfer_function.hpp"
 #include "study/volume_source.hpp"
 
 #include <fmt/format.h>
@@ -23,17 +25,13 @@ constexpr std::int64_t largest_seed = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t most_rays = 100'000'000;
 constexpr std::int64_t largest_generated_size = 2048;
 constexpr std::int64_t most_plot_columns = 8;
+constexpr double largest_optical_depth = 1e6;
 
 template <class Entries>
 std::vector<std::string_view> names_of(const Entries& entries) {
   std::vector<std::string_view> names(entries.size());
-  std::transform(entries.begin(), entries.end(), names.begin(), [](const auto& entry) { return entry.name; });
-  return names;
-}
-
-std::vector<std::string_view> scheme_names() {
-  std::vector<std::string_view> names;
-  catalogue::for_each_scheme([&names]<class S>() { names.push_back(S::info.name); });
+  std::transform(entries.begin(), entries.end(), names.begin(),
+                 [](const auto& entry) { return std::string_view(entry.name); });
   return names;
 }
 
@@ -77,8 +75,10 @@ void merge_quick(Json& document) {
   document.merge_patch(full["quick"]);
   const bool has_panels = document.contains("plot") && document["plot"].is_object() &&
                           document["plot"].contains("panels") && !document["plot"]["panels"].empty();
-  for (const auto& [column, list, key] :
-       {std::tuple{"field", "fields", "name"}, {"scheme", "schemes", ""}, {"measure", "measures", "kind"}}) {
+  for (const auto& [column, list, key] : {std::tuple{"field", "fields", "name"},
+                                          {"transfer", "transfer_functions", "name"},
+                                          {"scheme", "schemes", ""},
+                                          {"measure", "measures", "kind"}}) {
     std::vector<Json> lost = words_in(full, list, key);
     const std::vector<Json> kept = words_in(document, list, key);
     std::erase_if(lost, [&kept](const Json& word) { return std::find(kept.begin(), kept.end(), word) != kept.end(); });
@@ -95,6 +95,7 @@ void fill_in_defaults(Json& document) {
   document.emplace("samplings", Json::array({{{"kind", "cells"}}}));
   document.emplace("published", Json::array());
   document.emplace("checks", Json::array());
+  if (document.contains("transfer_functions")) document.emplace("emission", "associated");
   if (!document.contains("fields") || !document["fields"].is_array()) return;
   for (Json& field : document["fields"]) {
     if (!field.is_object() || !field.contains("kind")) continue;
@@ -135,6 +136,37 @@ void check_field(const JsonReader& json) {
   }
 }
 
+/// The extinction of the studies' transfer functions is such that a ray that meets the largest one all along has the
+/// optical depth stated.
+PiecewiseLinear read_transfer(const JsonReader& json, Experiment& experiment) {
+  const std::string kind = json.at("kind").word(names_of(catalogue::transfers));
+  const auto& entry = *std::find_if(catalogue::transfers.begin(), catalogue::transfers.end(),
+                                    [&kind](const auto& transfer) { return transfer.name == kind; });
+  if (entry.make == nullptr) {
+    json.only({"name", "kind", "transfer_function"});
+    const JsonReader place = json.at("transfer_function");
+    PiecewiseLinear transfer = read_transfer_function(place, experiment.warnings);
+    place.blame_for([&] { return RayIntegral(transfer, experiment.emission); });  // refuses what it cannot enclose
+    return transfer;
+  }
+  json.only({"name", "kind", "optical_depth"});
+  const double depth = json.at("optical_depth").number(0, largest_optical_depth);
+  return entry.make(depth / experiment.rays.length, experiment.seed);
+}
+
+void read_transfers(const JsonReader& json, Experiment& experiment) {
+  const auto transfers = json.find("transfer_functions");
+  const auto emission = json.find("emission");
+  if (!transfers && emission) emission->refuse_value("transfer_functions beside it, or nothing,");
+  if (!transfers) return;
+  if (json.at("emission").word({"associated", "plain"}) == "plain") experiment.emission = Emission::plain;
+  std::vector<std::string> names;
+  for (const JsonReader& item : transfers->items()) {
+    add_unique(names, item.at("name"), read_name(item.at("name")));
+    experiment.transfers.push_back({names.back(), read_transfer(item, experiment)});
+  }
+}
+
 void check_range(const JsonReader& json) {
   const auto ends = json.items(2);
   if (ends.size() != 2) json.refuse(fmt::format("{} items", ends.size()), "a pair of numbers");
@@ -147,9 +179,10 @@ void check_panel(const JsonReader& json, const RowNames& names) {
   read_selector(json.at("rows"), names);
   json.at("series").word(columns);
   if (kind == "lines") {
-    json.only(
-        {"kind", "rows", "x", "y", "series", "label_x", "label_y", "log_x", "log_y", "x_range", "y_range", "floor"});
+    json.only({"kind", "rows", "x", "y", "series", "front", "label_x", "label_y", "log_x", "log_y", "x_range",
+               "y_range", "floor"});
     for (const char* const column : {"x", "y"}) json.at(column).word(columns);
+    if (const auto front = json.find("front")) front->word(columns);
     for (const char* const label : {"label_x", "label_y"}) json.at(label).text();
     for (const char* const log : {"log_x", "log_y"})
       if (const auto found = json.find(log)) found->boolean();
@@ -197,8 +230,16 @@ std::vector<Check> read_checks(const JsonReader& json, const RowNames& names) {
   return checks;
 }
 
+bool has_gl_measure(const Json& document) {
+  const auto kinds = words_in(document, "measures", "kind");
+  return std::any_of(measures.begin(), measures.end(), [&kinds](const Measure& measure) {
+    return measure.uses_gl && std::find(kinds.begin(), kinds.end(), Json(measure.name)) != kinds.end();
+  });
+}
+
 /// The document as it is run.
-JsonReader read_document(const std::string& path, std::string_view profile, std::optional<std::int64_t> seed) {
+JsonReader read_document(const std::string& path, std::string_view profile, std::optional<std::int64_t> seed,
+                         const std::optional<std::string>& gl) {
   const JsonReader file = JsonReader::from_file(path);
   file.at("raytruth").word({"experiment/1"});
   Json document = file.json();
@@ -209,6 +250,7 @@ JsonReader read_document(const std::string& path, std::string_view profile, std:
   }
   fill_in_defaults(document);
   if (seed) document["seed"] = *seed;
+  if (gl && has_gl_measure(document)) document["gl"] = *gl;
   return JsonReader::from_json(std::move(document), file);
 }
 
@@ -231,20 +273,31 @@ Sampling read_sampling(const JsonReader& json) {
   return sampling;
 }
 
-Experiment read_experiment(const std::string& path, std::string_view profile, std::optional<std::int64_t> seed) {
-  const JsonReader json = read_document(path, profile, seed);
-  json.only({"raytruth", "name", "question", "source", "seed", "fields", "rays", "samplings", "schemes", "measures",
-             "published", "checks", "plot"});
+bool uses_gl(const Experiment& experiment) { return has_gl_measure(experiment.json.json()); }
+
+Experiment read_experiment(const std::string& path, std::string_view profile, std::optional<std::int64_t> seed,
+                           const std::optional<std::string>& gl) {
+  const JsonReader json = read_document(path, profile, seed, gl);
+  json.only({"raytruth", "name", "question", "source", "seed", "gl", "fields", "rays", "transfer_functions", "emission",
+             "samplings", "schemes", "measures", "published", "checks", "plot"});
   Experiment experiment{.name = read_name(json.at("name")),
                         .seed = static_cast<std::uint64_t>(json.at("seed").integer(0, largest_seed)),
                         .fields = {},
                         .rays = {},
+                        .transfers = {},
+                        .emission = Emission::associated,
                         .samplings = {},
                         .schemes = {},
                         .measures = {},
                         .claims = {},
                         .checks = {},
                         .json = json};
+  if (const auto stated = json.find("gl")) {
+    if (!uses_gl(experiment)) stated->refuse_value("a measure of shaders beside it, or nothing,");
+    const std::string platform = stated->word({gl_platforms[0].first, gl_platforms[1].first});
+    for (const auto& [name, value] : gl_platforms)
+      if (name == platform) experiment.gl = value;
+  }
   json.at("question").text();
   json.at("source").text();
 
@@ -261,8 +314,10 @@ Experiment read_experiment(const std::string& path, std::string_view profile, st
     const JsonReader rays = json.at("rays");
     rays.only({"count", "length"});
     experiment.rays = {rays.at("count").integer(1, most_rays), rays.at("length").positive_number()};
+    read_transfers(json, experiment);
+    for (const NamedTransfer& transfer : experiment.transfers) names.transfers.push_back(transfer.name);
   } else {
-    for (const char* const key : {"fields", "rays"})
+    for (const char* const key : {"fields", "rays", "transfer_functions"})
       if (const auto found = json.find(key)) found->refuse_value("a measure of fields beside it, or nothing,");
   }
   std::vector<std::string> samplings;
@@ -272,7 +327,8 @@ Experiment read_experiment(const std::string& path, std::string_view profile, st
                fmt::format("{} {}", experiment.samplings.back().kind, experiment.samplings.back().step.value_or(0)));
   }
   if (const auto schemes = json.find("schemes"))
-    for (const JsonReader& scheme : schemes->items()) add_unique(names.schemes, scheme, scheme.word(scheme_names()));
+    for (const JsonReader& scheme : schemes->items())
+      add_unique(names.schemes, scheme, scheme.word(names_of(catalogue::integral_schemes())));
   experiment.schemes = names.schemes;
   for (const JsonReader& measure : measure_items) {
     const Measure& found = measure_of(measure);
@@ -286,6 +342,31 @@ Experiment read_experiment(const std::string& path, std::string_view profile, st
   experiment.checks = read_checks(json.at("checks"), names);
   if (const auto plot = json.find("plot")) check_plot(*plot, names);
   return experiment;
+}
+
+void need_schemes(const Experiment& experiment) {
+  if (experiment.schemes.empty()) experiment.json.refuse("no schemes", "a member \"schemes\"");
+}
+
+void need_signal_schemes(const Experiment& experiment) {
+  need_schemes(experiment);
+  std::vector<std::string_view> names;
+  catalogue::for_each_scheme([&names]<class S>() { names.push_back(S::info.name); });
+  for (const JsonReader& scheme : experiment.json.at("schemes").items()) scheme.word(names);
+}
+
+void need_usable_samplings(const Experiment& experiment, const JsonReader& measure) {
+  for (const Sampling& sampling : experiment.samplings)
+    for (const std::string& scheme : experiment.schemes)
+      catalogue::visit_scheme(scheme, [&]<class S>() {
+        const Samples<double> samples{.positions = {}, .values = {}, .step = sampling.step};
+        const std::string_view why = refusal<S>(samples);
+        if (!why.empty()) measure.refuse(fmt::format("{} with {} samples", scheme, sampling.kind), why);
+      });
+}
+
+void need_transfers(const Experiment& experiment) {
+  if (experiment.transfers.empty()) experiment.json.refuse("no transfer functions", "a member \"transfer_functions\"");
 }
 
 Field make_field(const Experiment& experiment, const FieldSource& source,

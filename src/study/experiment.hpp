@@ -1,9 +1,13 @@
 #pragma once
 
+#include "gl/device.hpp"
+#include "reference/certified.hpp"
 #include "study/json_reader.hpp"
 #include "study/verdict.hpp"
+#include "transfer/piecewise_linear.hpp"
 #include "volume/grid.hpp"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -40,6 +44,12 @@ struct Field {
   std::vector<std::string> warnings = {};  ///< one line each
 };
 
+/// A transfer function of an experiment.
+struct NamedTransfer {
+  std::string name;
+  PiecewiseLinear transfer;
+};
+
 /// The rays of a study: `count` of them per field, directions isotropic, all of `length` voxels.
 struct RayEnsemble {
   std::int64_t count = 0;
@@ -52,22 +62,43 @@ struct Experiment {
   std::uint64_t seed = 1;
   std::vector<FieldSource> fields;
   RayEnsemble rays;
+  std::vector<NamedTransfer> transfers;
+  Emission emission = Emission::associated;
   std::vector<Sampling> samplings;
   std::vector<std::string> schemes;
   std::vector<JsonReader> measures;
   std::vector<Claim> claims;
   std::vector<Check> checks;
-  JsonReader json;  ///< the whole document, profile merged in, defaults filled in
+  JsonReader json;                         ///< the whole document, profile merged in, defaults filled in
+  std::vector<std::string> warnings = {};  ///< one line each
+  GlPlatform gl = GlPlatform::osmesa;      ///< for measures that run shaders
 };
+
+/// What `--gl` and an experiment's "gl" may say.
+inline constexpr std::array gl_platforms{std::pair{std::string_view("osmesa"), GlPlatform::osmesa},
+                                         std::pair{std::string_view("egl"), GlPlatform::egl}};
+
+/// Whether a measure of the experiment runs shaders.
+bool uses_gl(const Experiment& experiment);
 
 /// Reads and checks an experiment. `profile` is "full" or "quick"; "quick" merges the member of that name into the
 /// document (RFC 7396), and leaves out claims, checks and panels about fields, schemes and measures that are no longer
-/// in it. `seed` replaces the document's. Throws InputError.
-Experiment read_experiment(const std::string& path, std::string_view profile, std::optional<std::int64_t> seed);
+/// in it. `seed` replaces the document's, and `gl` that of a document that uses it. Throws InputError.
+Experiment read_experiment(const std::string& path, std::string_view profile, std::optional<std::int64_t> seed,
+                           const std::optional<std::string>& gl);
 
 /// Makes a field, from its generator or its file found in `folders`. Throws VolumeAbsent where no folder holds it.
 Field make_field(const Experiment& experiment, const FieldSource& source,
                  const std::vector<std::filesystem::path>& folders);
+
+// What measures need of an experiment; each refuses one that lacks it.
+
+void need_schemes(const Experiment& experiment);
+/// Schemes, all of which approximate the signal: those of catalogue::Schemes.
+void need_signal_schemes(const Experiment& experiment);
+/// Samplings that all of these can use; `measure` is where a lack is reported.
+void need_usable_samplings(const Experiment& experiment, const JsonReader& measure);
+void need_transfers(const Experiment& experiment);
 
 /// The columns of a result: `measure`, `field`, those of the measures, `status` and `why`.
 std::vector<Column> result_columns(const Experiment& experiment);

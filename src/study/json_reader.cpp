@@ -1,5 +1,6 @@
 #include "study/json_reader.hpp"
 
+#include "study/input.hpp"
 #include "study/one_line.hpp"
 
 #include <fmt/format.h>
@@ -7,11 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <system_error>
 
 namespace raytruth {
 
@@ -21,7 +18,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t deepest_nesting = 64;
 constexpr std::size_t most_members = 1000;
-constexpr std::size_t longest_text = std::size_t{1} << 30U;
 
 [[noreturn]] void refuse_place(std::string_view place, std::string_view found, std::string_view allowed) {
   throw InputError(one_line(fmt::format("{}: found {}; {} is allowed", place, found, allowed)));
@@ -137,28 +133,6 @@ class StrictBuilder {
   Json* member_ = nullptr;
 };
 
-std::string read_text(const std::string& path) {
-  const bool is_standard_input = path == "-";
-  const auto refuse = [&path](std::string_view found) { refuse_place(path, found, "a readable JSON file"); };
-  const auto unreadable = [] {
-    return fmt::format("what cannot be read ({})", std::generic_category().message(errno));
-  };
-  std::error_code ignored;
-  if (!is_standard_input && std::filesystem::is_directory(path, ignored)) refuse("a folder");
-  const auto close = [](std::FILE* file) { return file == stdin ? 0 : std::fclose(file); };
-  const std::unique_ptr<std::FILE, decltype(close)> file(is_standard_input ? stdin : std::fopen(path.c_str(), "rb"),
-                                                         close);
-  if (!file) refuse(unreadable());
-  std::string text;
-  std::array<char, std::size_t{1} << 16U> part{};
-  while (const std::size_t count = std::fread(part.data(), 1, part.size(), file.get())) {
-    text.append(part.data(), count);
-    if (text.size() > longest_text) refuse("more than 1 GiB");
-  }
-  if (std::ferror(file.get()) != 0) refuse(unreadable());
-  return text;
-}
-
 }  // namespace
 
 JsonReader::JsonReader(Json document, std::string file_name)
@@ -167,7 +141,7 @@ JsonReader::JsonReader(Json document, std::string file_name)
       value_(document_.get()) {}
 
 JsonReader JsonReader::from_file(const std::string& path) {
-  return from_text(read_text(path), path == "-" ? "standard input" : path);
+  return from_text(read_text(path, "a readable JSON file"), input_name(path));
 }
 
 JsonReader JsonReader::from_text(std::string_view text, std::string file_name) {

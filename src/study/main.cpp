@@ -35,6 +35,8 @@ class CommandLine {
     add_plot();
     add_diff();
     add_info();
+    add_vectors();
+    add_score();
   }
 
   /// Returns the exit code.
@@ -82,6 +84,13 @@ class CommandLine {
         ->check(CLI::Range(1, most_threads));
   }
 
+  template <class Seed>
+  static void add_seed(CLI::App& command, Seed& seed, const char* summary) {
+    command.add_option("--seed", seed, summary)
+        ->type_name("S")
+        ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
+  }
+
   void add_run() {
     auto& command =
         *add_command("run", "Run experiments", "raytruth run experiments/xi_adaptive.json -o out --profile quick", run_,
@@ -93,9 +102,10 @@ class CommandLine {
     command.add_option("--profile", run_.profile, "quick: a smaller version, in seconds (default: full)")
         ->type_name("NAME")
         ->check(CLI::IsMember({"quick", "full"}));
-    command.add_option("--seed", run_.seed, "Instead of the experiment's")
-        ->type_name("S")
-        ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
+    add_seed(command, run_.seed, "Instead of the experiment's");
+    command.add_option("--gl", run_.gl, "Run shaders by osmesa or by egl, a GPU's driver (default: the experiment's)")
+        ->type_name("NAME")
+        ->check(CLI::IsMember({"osmesa", "egl"}));
     command.add_flag("--check", run_.check, "Exit with 1 if a bound that the experiment states does not hold");
     command.add_flag("--resume", run_.resume, "Finish an interrupted run; needs -o");
     add_data(command, run_.data);
@@ -143,6 +153,30 @@ class CommandLine {
     add_data(command, info_.data);
   }
 
+  void add_vectors() {
+    auto& command = *add_command(
+        "vectors", "Write the conformance vectors: rays and slabs with certified colour and opacity, for any renderer",
+        "raytruth vectors -o vectors.json", vectors_, write_vectors);
+    command.add_option("-o", vectors_.file, "Write this file (default: to standard output)")->type_name("FILE");
+    add_seed(command, vectors_.seed, "Other vectors of the same levels (default: 1)");
+  }
+
+  void add_score() {
+    auto& command = *add_command("score", "Count the digits that are right in a program's answers to the vectors",
+                                 "raytruth score vectors.json answers.csv", score_, score_answers);
+    command.add_option("vectors", score_.vectors, "JSON file, written by `raytruth vectors`")->required();
+    command.add_option("answers", score_.answers, "CSV file with the header id,r,g,b,opacity; '-' is standard input")
+        ->required();
+    command.add_flag("--json", score_.json, "As JSON");
+    command.footer(fmt::format(
+        "Digits of an answer: -log10(error / scale), of colour and opacity the lesser one. The colour's\n"
+        "error is that of its worst channel, its scale the largest channel of the certified colour; the\n"
+        "opacity's scale is the certified opacity. Errors below the certified error_bound, or 2^-53 of the\n"
+        "scale, count as that much; errors above the scale have no digits, nor has a vector without an\n"
+        "answer. Ids that are not in the vectors are refused.\n\n{}",
+        command.get_footer()));
+  }
+
   CLI::App program_{"Exact rays through volumes, and how far the schemes of volume rendering are from them.",
                     "raytruth"};
   RunOptions run_;
@@ -151,6 +185,8 @@ class CommandLine {
   PlotOptions plot_;
   DiffOptions diff_;
   InfoOptions info_;
+  VectorsOptions vectors_;
+  ScoreOptions score_;
   std::function<int()> chosen_;
 };
 

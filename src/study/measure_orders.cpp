@@ -90,7 +90,7 @@ void add_fit(Row& row, const std::string& name, const std::array<double, level_c
 
 std::vector<Column> orders_columns(const Experiment& experiment, const JsonReader& options) {
   options.only({"kind"});
-  if (experiment.schemes.empty()) experiment.json.refuse("orders without schemes", "a member \"schemes\"");
+  need_signal_schemes(experiment);
   std::vector<Column> columns{
       {.name = "regime",
        .unit = "",

@@ -40,14 +40,8 @@ struct Options {
 
 Options read_options(const Experiment& experiment, const JsonReader& json) {
   json.only({"kind", "ratios", "printed"});
-  if (experiment.schemes.empty()) experiment.json.refuse("signal_error without schemes", "a member \"schemes\"");
-  for (const Sampling& sampling : experiment.samplings)
-    for (const std::string& scheme : experiment.schemes)
-      catalogue::visit_scheme(scheme, [&]<class S>() {
-        const Samples<double> samples{.positions = {}, .values = {}, .step = sampling.step};
-        const std::string_view why = refusal<S>(samples);
-        if (!why.empty()) json.refuse(fmt::format("{} with {} samples", scheme, sampling.kind), why);
-      });
+  need_signal_schemes(experiment);
+  need_usable_samplings(experiment, json);
   const std::vector<std::string_view> schemes(experiment.schemes.begin(), experiment.schemes.end());
   Options options;
   if (const auto ratios = json.find("ratios"))

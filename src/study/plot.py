@@ -180,24 +180,27 @@ def draw_points(axes, result, panel):
 
 
 def draw_lines(axes, result, panel):
-    """A curve per series. What lies at or below the floor, exact zeros on a log axis too, stands on it, hollow."""
+    """A curve per series. What lies at or below the floor, exact zeros on a log axis too, stands on it, hollow; hollow is
+    also what its radius hardly tells from nothing. `front`: the column that says which rows a grey line joins."""
     x, y = panel["x"], panel["y"]
     rows = [row for row in select(result["rows"], panel["rows"]) if None not in (row.get(x), row.get(y))]
     floor = panel.get("floor", -float("inf"))
     if panel.get("log_y"):
         floor = max(floor, floor_of([row[y] for row in rows if row[y] > max(floor, 0)]))
     handles = []
+    if front := sorted((row[x], max(row[y], floor)) for row in rows if row.get(panel.get("front"))):
+        axes.plot(*zip(*front), color="0.82", linewidth=4, solid_capstyle="round", zorder=0)
     for index, (name, style) in enumerate(styled_series(result, rows, panel["series"])):
-        points = sorted((row[x], row[y]) for row in select(rows, {panel["series"]: name}))
+        own = sorted(select(rows, {panel["series"]: name}), key=lambda row: row[x])
         line = {"color": style["color"], "linestyle": style["linestyle"], "linewidth": 1.1, "marker": style["marker"]}
         line |= {"markersize": 3.5, "markeredgecolor": "black", "markeredgewidth": 0.4}
         # Of many points a few carry a marker, each series at places of its own.
-        spacing = len(points) // 12 + 1
-        shown = [(point, max(value, floor)) for point, value in points]
+        spacing = len(own) // 12 + 1
+        shown = [(row[x], max(row[y], floor)) for row in own]
         axes.plot(*zip(*shown), **line, markevery=(index * spacing // 3 % spacing, spacing))
-        for point, value in points:
-            if value <= floor:
-                draw_marker(axes, point, floor, style, filled=False)
+        for row, (point, value) in zip(own, shown):
+            if value <= floor or 0 < abs(value) <= MEANINGFUL_RADII * radius_of(result, row, y):
+                draw_marker(axes, point, value, style, filled=False)
         handles.append(Line2D([], [], **line, label=words(name)))
     if panel.get("log_x"):
         axes.set_xscale("log")

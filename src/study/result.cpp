@@ -68,10 +68,10 @@ Json checks_json(const Experiment& experiment, const std::vector<Row>& rows) {
 /// How plots show the schemes.
 Json styles_json(const Experiment& experiment) {
   Json json = Json::object();
-  for (const std::string& scheme : experiment.schemes)
-    catalogue::visit_scheme(scheme, [&json]<class S>() {
-      json[S::info.name] = {{"color", S::info.color}, {"marker", S::info.marker}, {"label", S::info.summary}};
-    });
+  for (const std::string& name : experiment.schemes) {
+    const IntegralScheme& scheme = *catalogue::find_integral_scheme(name);
+    json[name] = {{"color", scheme.color}, {"marker", scheme.marker}, {"label", scheme.summary}};
+  }
   return json;
 }
 
@@ -140,6 +140,11 @@ Json make_result(const Experiment& experiment, const Provenance& provenance, con
   origin["seconds"] = provenance.seconds;
   origin["started"] = provenance.started;
   if (provenance.resumed) origin["resumed"] = true;
+  if (provenance.gl)
+    origin["gl"] = {{"platform", provenance.gl->platform},
+                    {"vendor", provenance.gl->vendor},
+                    {"renderer", provenance.gl->renderer},
+                    {"version", provenance.gl->version}};
   Json json_rows = Json::array();
   for (const Row& row : rows) json_rows.push_back(to_json(row));
   return {{"raytruth", "result/1"},

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct Provenance {
   double seconds = 0;
   std::string started;  ///< UTC, as 2026-01-31T23:59:59Z
   bool resumed = false;
+  std::optional<GlIdentity> gl = {};  ///< what ran the shaders
 };
 
 /// What decides about the bytes of rows besides the experiment: version, commit, compiler, flags, cpu.

@@ -23,4 +23,8 @@ struct Column {
   std::string radius = {};  ///< the column that holds this one's radius; empty: exact
 };
 
+inline void append(std::vector<Column>& columns, const std::vector<Column>& more) {
+  columns.insert(columns.end(), more.begin(), more.end());
+}
+
 }  // namespace raytruth

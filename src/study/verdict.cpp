@@ -131,10 +131,11 @@ Selector read_selector(const JsonReader& json, const RowNames& names) {
   for (const auto& [column, json_value] : json.members()) {
     if (std::find(names.columns.begin(), names.columns.end(), column) == names.columns.end())
       json_value.refuse("a key that is no column", "a column of the rows");
-    const auto* const words = column == "measure"  ? &names.measures
-                              : column == "field"  ? &names.fields
-                              : column == "scheme" ? &names.schemes
-                                                   : nullptr;
+    const auto* const words = column == "measure"    ? &names.measures
+                              : column == "field"    ? &names.fields
+                              : column == "transfer" ? &names.transfers
+                              : column == "scheme"   ? &names.schemes
+                                                     : nullptr;
     auto& values = selector.emplace_back(column, std::vector<Value>{}).second;
     for (const JsonReader& item : json_value.is_array() ? json_value.items() : std::vector{json_value}) {
       values.push_back(read_value(item));

@@ -65,6 +65,7 @@ struct RowNames {
   std::vector<std::string> columns;
   std::vector<std::string> measures;
   std::vector<std::string> fields;
+  std::vector<std::string> transfers;
   std::vector<std::string> schemes;
 };
 

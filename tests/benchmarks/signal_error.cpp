@@ -155,6 +155,7 @@ void two_threads_against_one(benchmark::State& state) {
                               .seed = 1,
                               .fields = {},
                               .rays = {.count = 8192, .length = 8.5},
+                              .transfers = {},
                               .samplings = {{.kind = "cells", .step = {}}},
                               .schemes = {"order0_left", "order0_right", "order0_mid", "order1", "order2"},
                               .measures = {},

@@ -97,6 +97,38 @@ EXPERIMENT = {
     "quick": {"rays": {"count": 16}},
 }
 
+# An experiment on colour and opacity.
+STUDY = {
+    "raytruth": "experiment/1",
+    "name": "study",
+    "question": "Does it integrate?",
+    "source": "tests",
+    "seed": 1,
+    "fields": [{"name": "white", "kind": "random_field", "size": 8, "smoothing": 0}],
+    "rays": {"count": 3, "length": 4},
+    "transfer_functions": [
+        {"name": "tent", "kind": "tent", "optical_depth": 3},
+        {"name": "own", "kind": "points", "transfer_function": RAY["transfer_function"]},
+    ],
+    "emission": "plain",
+    "samplings": [{"kind": "constant", "step": 1}],
+    "schemes": ["order1", "order2"],
+    "measures": [
+        {"kind": "work_precision"},
+        {"kind": "xi_versus_integral"},
+        {"kind": "iterations", "signal": "order2", "counts": [8, 64]},
+        {"kind": "opacity_conventions", "shapes": ["ramp"], "peaks": [0.1], "steps": [0.5]},
+    ],
+    "checks": [
+        {
+            "bound": "half the look-ups",
+            "rows": {"measure": "work_precision", "field": "white", "transfer": ["tent", "own"], "scheme": "order2"},
+            "column": "lookups_ratio",
+            "at_most": 0.5,
+        }
+    ],
+}
+
 
 def changed(document, pointer, value):
     """A copy of the document with another value, or a new one, at a JSON pointer; `...` removes the member."""

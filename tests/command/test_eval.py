@@ -4,14 +4,28 @@ import json
 import math
 import unittest
 
+import exact_integral
 from support import RAY, VOLUME_RAY, ProgramTest, changed
+
+EMISSIONS = ("associated", "plain")
+
+
+def colored(ray, *points, emission="associated"):
+    """The case under a transfer function of points (s, extinction, color)."""
+    points = [dict(zip(("s", "extinction", "color"), point)) for point in points]
+    return {**ray, "transfer_function": {"points": points}, "emission": emission}
+
+
+def polynomial(breaks, *coefficients):
+    """A case whose signal is this one."""
+    signal = {"kind": "piecewise_polynomial", "breaks": breaks, "coefficients": coefficients}
+    return {"signal": signal, "sampling": {"kind": "cells"}, "schemes": ["order1"]}
 
 
 class Answers(ProgramTest):
     def test_ray_of_polynomials(self):
         answer = self.json_of("eval", "-", stdin=RAY)
         self.assertEqual(answer["length"], 2.5)
-        self.assertEqual(answer["reference"]["status"], "refused")
         self.assertEqual(list(answer["schemes"]), RAY["schemes"][1:])
         samples = {name: scheme["samples"] for name, scheme in answer["schemes"].items()}
         self.assertEqual(samples, {"order0_mid": 21, "order1": 11, "order2": 11, "virtual_catmull_rom": 11})
@@ -96,13 +110,151 @@ class Answers(ProgramTest):
         self.output_of("eval", "-", stdin=changed(RAY, "/transfer_function", "tf.json"))
 
 
+class Truth(ProgramTest):
+    """Colours and opacities against closed forms, written here a second time."""
+
+    def reference(self, case):
+        return self.json_of("eval", "-", stdin=case)["reference"]
+
+    def assert_encloses(self, reference, color, opacity, wide=1e-13):
+        """Within the bound, and 1e-15 for the rounding of what is expected."""
+        self.assertEqual(list(reference), ["color", "opacity", "error_bound"])
+        self.assertLess(reference["error_bound"], wide)
+        for found, exact in zip([*reference["color"], reference["opacity"]], [*color, opacity]):
+            self.assertLessEqual(abs(found - exact), reference["error_bound"] + 1e-15)
+
+    def test_constant_signal(self):
+        # q (1 - e^(-tau L)) / tau, with tau = 2, L = 3/2.
+        ray = polynomial([0, 0.5, 1.5], [0.25], [0.25])
+        for emission, q in (("associated", 2), ("plain", 1)):
+            case = colored(ray, (0, 1, [1, 0.5, 0]), (0.5, 3, [0, 0.5, 1]), emission=emission)
+            light = -math.expm1(-3) / 2 * q
+            self.assert_encloses(self.reference(case), [light / 2] * 3, -math.expm1(-3))
+
+    def test_ramp_of_the_extinction_along_the_ray(self):
+        # tau = 8 t on [0, 1]: T = exp(-4 t^2), and the plain colour 1 gathers sqrt(pi) erf(2) / 4.
+        case = colored(polynomial([0, 1], [0, 1]), (0, 0, [1, 1, 1]), (1, 8, [1, 1, 1]))
+        opacity = -math.expm1(-4)
+        self.assert_encloses(self.reference(case), [opacity] * 3, opacity)
+        light = math.sqrt(math.pi) * math.erf(2) / 4
+        self.assert_encloses(self.reference({**case, "emission": "plain"}), [light] * 3, opacity)
+        # And where the colour rises too, c = t: integral t exp(-4 t^2) dt = (1 - e^-4) / 8.
+        rising = colored(polynomial([0, 1], [0, 1]), (0, 0, [0, 0, 0]), (1, 8, [1, 1, 1]), emission="plain")
+        self.assert_encloses(self.reference(rising), [opacity / 8] * 3, opacity)
+
+    def test_step_of_the_transfer_function(self):
+        # The signal is above 1/2 from t = 1/2 on.
+        case = colored(polynomial([0, 1], [0, 1]), (0.5, 0, [1, 1, 1]), (0.5, 2, [0.5, 0.25, 0]))
+        opacity = -math.expm1(-1)
+        self.assert_encloses(self.reference(case), [opacity / 2, opacity / 4, 0], opacity)
+
+    def test_faint_ray_keeps_its_digits(self):
+        case = colored(polynomial([0, 1], [0.5]), (0, 1e-9, [1, 1, 1]))
+        reference = self.reference(case)
+        self.assertLess(reference["error_bound"], 1e-19)
+        self.assertLessEqual(abs(reference["opacity"] - -math.expm1(-1e-9)), reference["error_bound"] + 1e-24)
+
+    def test_ray_of_the_interface(self):
+        for emission in EMISSIONS:
+            case = {**RAY, "emission": emission}
+            color, opacity = exact_integral.integrate({key: case[key] for key in ("signal", "transfer_function", "emission")})
+            answer = self.json_of("eval", "-", stdin=case)
+            self.assert_encloses(answer["reference"], map(float, color), float(opacity))
+            for scheme in answer["schemes"].values():
+                for channel, error, exact in zip(scheme["color"], scheme["color_error"], color):
+                    self.assertLessEqual(abs(channel - error - float(exact)), scheme["error_bound"] + 1e-15)
+                self.assertLessEqual(abs(scheme["opacity"] - scheme["opacity_error"] - float(opacity)), scheme["error_bound"] + 1e-15)
+
+    def test_opacity_of_a_trilinear_ray(self):
+        # s = (t / L)^3 from corner to corner: the depth under tau = 4 s is L.
+        case = colored(VOLUME_RAY, (0, 0, [1, 1, 1]), (1, 4, [1, 1, 1]))
+        opacity = -math.expm1(-(3**0.5))
+        self.assert_encloses(self.reference(case), [opacity] * 3, opacity)
+
+    def test_opacity_of_a_tricubic_ray(self):
+        # A ramp along x is reproduced: Catmull-Rom passes through it, the B-spline keeps linear data.
+        volume = {"size": [8, 1, 1], "values": [i / 8 for i in range(8)]}
+        ray = {"kind": "tricubic", "volume": volume, "origin": [2, 0, 0], "direction": [2, 0, 0], "length": 2}
+        for kernel in ("catmull_rom", "bspline"):
+            case = colored({**VOLUME_RAY, "signal": {**ray, "kernel": kernel}}, (0, 0, [1, 1, 1]), (1, 4, [1, 1, 1]))
+            opacity = -math.expm1(-4 * 2 * 3 / 8)
+            self.assert_encloses(self.reference(case), [opacity] * 3, opacity)
+
+    def test_signals_that_are_no_polynomials(self):
+        # On the axis of Marschner and Lobb's signal rho = (1 - sin(pi z / 2) + (1 + cos(12 pi)) / 4) / 2.5.
+        ray = {"kind": "marschner_lobb", "origin": [0, 0, -1], "direction": [0, 0, 3]}
+        case = colored({**VOLUME_RAY, "signal": ray, "schemes": ["order1"]}, (0, 0, [1, 1, 1]), (1, 4, [1, 1, 1]))
+        opacity = -math.expm1(-4 * 2 * 1.5 / 2.5)
+        self.assert_encloses(self.reference(case), [opacity] * 3, opacity)
+        for name in ("sine_slow", "gaussian_narrow", "step_between_samples"):
+            case = colored({**VOLUME_RAY, "signal": {"kind": "analytic", "name": name}, "schemes": ["order1"]}, (0, 0.5, [1, 1, 1]))
+            answer = self.json_of("eval", "-", stdin=case)
+            opacity = -math.expm1(-answer["length"] / 2)
+            self.assert_encloses(answer["reference"], [opacity] * 3, opacity)
+
+    def test_empty_ray(self):
+        case = colored(changed(VOLUME_RAY, "/signal/length", 0), (0, 1, [1, 1, 1]))
+        answer = self.json_of("eval", "-", stdin=case)
+        self.assertEqual(answer["reference"], {"color": [0, 0, 0], "opacity": 0, "error_bound": 0})
+        for scheme in answer["schemes"].values():
+            self.assertEqual((scheme["color"], scheme["opacity"], scheme["opacity_error"]), ([0, 0, 0], 0, 0))
+
+    def test_without_a_transfer_function(self):
+        answer = self.json_of("eval", "-", stdin=changed(VOLUME_RAY, "/schemes", ["order1", "riemann_left"]))
+        self.assertEqual(answer["reference"]["status"], "refused")
+        self.assertIn("transfer function", answer["reference"]["why"])
+        self.assertIn("xi", answer["schemes"]["order1"])
+        self.assertNotIn("color", answer["schemes"]["order1"])
+        self.assertEqual(answer["schemes"]["riemann_left"], answer["reference"])
+
+    def test_wide_bounds_say_so_and_hold(self):
+        # The signal touches a jump from below, with a contact of order 8: rounding decides how much of the ray is above.
+        powers = [math.comb(8, k) * 2**k * (-1) ** (8 - k) for k in range(9)]
+        signal = polynomial([0, 1], [0.5 - powers[0] / 3, *(-power / 3 for power in powers[1:])])
+        case = colored(signal, (0.5, 0, [0, 0, 0]), (0.5, 10, [1, 1, 1]))
+        reference = self.reference(case)
+        self.assertEqual(reference["status"], "not_converged")
+        self.assertIn("error_bound", reference["why"])
+        color, opacity = exact_integral.integrate({key: case[key] for key in ("signal", "transfer_function", "emission")})
+        self.assertLessEqual(abs(reference["opacity"] - float(opacity)), reference["error_bound"])
+
+    def test_reference_is_there_unasked(self):
+        self.assertEqual(self.reference(RAY), self.reference(changed(RAY, "/schemes", ["order1"])))
+        only = self.json_of("eval", "-", stdin=changed(RAY, "/schemes", ["reference"]))
+        self.assertEqual((only["reference"], only["schemes"]), (self.reference(RAY), {}))
+
+
+class Budget(ProgramTest):
+    def test_parts_add_up(self):
+        schemes = ["order1", "riemann_left", "order1_no_attenuation", "order1_iterations_64", "simpson"]
+        for name, scheme in self.json_of("eval", "-", stdin=changed(RAY, "/schemes", schemes))["schemes"].items():
+            with self.subTest(scheme=name):
+                parts = scheme["budget"]
+                for channel in range(3):
+                    sums = sum(part["color"][channel] for cause, part in parts.items() if cause != "round32")
+                    self.assertAlmostEqual(sums, scheme["color_error"][channel], places=14)
+                sums = sum(part["opacity"] for cause, part in parts.items() if cause != "round32")
+                self.assertAlmostEqual(sums, scheme["opacity_error"], places=14)
+                self.assertEqual("round32" in parts, name in ("riemann_left", "simpson"))
+
+    def test_left_riemann_by_hand(self):
+        # Two homogeneous halves, with the extinctions 0 and 4 s = 2 of their front samples.
+        case = colored(polynomial([0, 1], [0, 1]), (0, 0, [1, 1, 1]), (1, 4, [1, 1, 1]))
+        case = {**case, "sampling": {"kind": "constant", "step": 0.5}, "schemes": ["riemann_left", "order1"]}
+        schemes = self.json_of("eval", "-", stdin=case)["schemes"]
+        self.assertAlmostEqual(schemes["riemann_left"]["opacity"], -math.expm1(-1), places=15)
+        self.assertAlmostEqual(schemes["riemann_left"]["opacity_error"], math.expm1(-2) - math.expm1(-1), places=15)
+        self.assertNotIn("xi", schemes["riemann_left"])
+        self.assertAlmostEqual(schemes["order1"]["opacity_error"], 0, places=15)
+
+
 class Refusals(ProgramTest):
     """(document, JSON pointer named, words of the message)"""
 
     points = "/transfer_function/points"
     point = {"s": 2, "extinction": 0, "color": [0, 0, 0]}
     bad = [
-        (changed(RAY, "/schemes/1", "order3"), "/schemes/1", "order2"),
+        (changed(RAY, "/schemes/1", "order4"), "/schemes/1", "order2"),
         (changed(RAY, "/schemes/1", "order0mid"), "/schemes/1", "(perhaps order0_mid)"),
         (changed(RAY, "/schemes/1", "reference"), "/schemes/1", "each scheme once"),
         (changed(RAY, "/schemes", []), "/schemes", "list"),
@@ -138,6 +290,9 @@ class Refusals(ProgramTest):
         (changed(RAY, points + "/0", {"s": 0, "opacity": 0, "color": [0, 0, 0]}), points + "/0/opacity", "unknown"),
         (changed(RAY, "/transfer_function/unit_length", 1), points + "/0/extinction", "unknown"),
         (changed(RAY, "/transfer_function", "no.json"), "/transfer_function", "no.json"),
+        (changed(RAY, points + "/1/extinction", 1e300), "/transfer_function", "2^500"),
+        (changed(RAY, points + "/1/color/1", 1e300), "/transfer_function", "2^500"),
+        (changed(RAY, points + "/1/s", 1e300), "/transfer_function", "2^500"),
         (changed(VOLUME_RAY, "/signal/length", -1), "/signal/length", "found -1"),
         (changed(VOLUME_RAY, "/signal/origin", [1, 2]), "/signal/origin", "3 numbers"),
         (changed(VOLUME_RAY, "/signal/origin/1", "a"), "/signal/origin/1", "a number"),

@@ -6,7 +6,7 @@ import unittest
 
 from support import EXPERIMENT, PROGRAM, RAY, ProgramTest, changed
 
-COMMANDS = ["run", "list", "eval", "plot", "diff", "info"]
+COMMANDS = ["run", "list", "eval", "plot", "diff", "info", "vectors", "score"]
 HEADER = b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 3 4\nencoding: raw\nspacings: 1 1 2\n\n"
 
 

@@ -8,7 +8,7 @@ import subprocess
 import time
 import unittest
 
-from support import EXPERIMENT, PROGRAM, SOURCE, ProgramTest, changed
+from support import EXPERIMENT, PROGRAM, SOURCE, STUDY, ProgramTest, changed
 
 VOLUME = {"name": "absent", "kind": "volume", "volume": "no_such_volume"}
 
@@ -295,6 +295,18 @@ class Refusals(ProgramTest):
         (changed(EXPERIMENT, "/plot/panels", []), "/plot/panels", "at least 1"),
         (changed(EXPERIMENT, "/quick", []), "/quick", "object"),
         ([EXPERIMENT], "/", "an object"),
+        (changed(STUDY, "/transfer_functions", ...), "/emission", "transfer_functions beside it"),
+        (changed(changed(STUDY, "/transfer_functions", ...), "/emission", ...), "/", "transfer_functions"),
+        (changed(STUDY, "/transfer_functions/1/name", "tent"), "/transfer_functions/1/name", "each name once"),
+        (changed(STUDY, "/transfer_functions/0/kind", "tend"), "/transfer_functions/0/kind", "perhaps tent"),
+        (changed(STUDY, "/transfer_functions/0/optical_depth", -1), "/transfer_functions/0/optical_depth", "0"),
+        (changed(STUDY, "/transfer_functions/1/transfer_function/points/1/s", -1), "/transfer_functions/1/transfer_function/points/1", "sorted"),
+        (changed(STUDY, "/transfer_functions/1/transfer_function/points/1/extinction", 1e300), "/transfer_functions/1/transfer_function", "2^500"),
+        (changed(STUDY, "/emission", "glowing"), "/emission", "associated"),
+        (changed(STUDY, "/schemes/0", "riemann_mid"), "/schemes/0", "order0_mid"),
+        (changed(STUDY, "/measures/2/counts", [64, 8]), "/measures/2/counts/1", "65"),
+        (changed(STUDY, "/measures/3/shapes/0", "points"), "/measures/3/shapes/0", "ramp"),
+        (changed(STUDY, "/checks/0/rows/transfer", "ramp"), "/checks/0/rows/transfer", "tent"),
     ]
 
     def test_place_and_reason_in_one_line(self):

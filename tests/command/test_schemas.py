@@ -8,9 +8,9 @@ import jsonschema
 
 import test_eval
 import test_run
-from support import EXPERIMENT, RAY, SOURCE, VOLUME_RAY, ProgramTest, changed
+from support import EXPERIMENT, RAY, SOURCE, STUDY, VOLUME_RAY, ProgramTest, changed
 
-SCHEMAS = {name: json.loads((SOURCE / f"experiments/schemas/{name}.json").read_text()) for name in ("experiment", "case", "result")}
+SCHEMAS = {name: json.loads((SOURCE / f"experiments/schemas/{name}.json").read_text()) for name in ("experiment", "case", "result", "vectors")}
 STORE = {schema["$id"]: schema for schema in SCHEMAS.values()}
 
 
@@ -48,7 +48,7 @@ BEYOND_CASE_SCHEMA = re.compile(
     | /signal/origin/\d\ =\ 1e\+300
     | /signal/volume\ =\ "word"
     | /transfer_function\ =\ "word"
-    | /transfer_function/points/0/s\ =\ 1e\+300
+    | /transfer_function/points/./(s|extinction|color/.)\ =\ 1e\+300
     | /transfer_function/points/1/s\ =\ -1
     """,
     re.VERBOSE,
@@ -63,6 +63,10 @@ BEYOND_EXPERIMENT_SCHEMA = re.compile(
     | /published/0/(measured|low|high)\ =\ "word"
     | .*/column\ =\ "word"
     | /plot/panels/0/(group|series)\ =\ "word"
+    | /transfer_functions/\d/name\ =\ "word"  # the checks name them
+    | .*/rows/transfer(/\d)?\ =\ "word"
+    | /transfer_functions/1/transfer_function\ =\ "word"
+    | .*/points/(./(s|extinction|color/.)\ =\ 1e\+300|1/s\ =\ -1)
     """,
     re.VERBOSE,
 )
@@ -95,9 +99,12 @@ class Agreement(ProgramTest):
 
     def test_experiments(self):
         schema = validator("experiment")
-        self.assertTrue(schema.is_valid(EXPERIMENT))
-        self.assertTrue(self.program_accepts("run", EXPERIMENT))
-        self.assert_agreement("run", schema, mutations(EXPERIMENT), BEYOND_EXPERIMENT_SCHEMA)
+        recursion = {"kind": "opacity_recursion", "opacities": [0.5], "parts": [4]}
+        alone = {key: STUDY[key] for key in ("raytruth", "name", "question", "source")} | {"measures": [recursion]}
+        for experiment in (EXPERIMENT, STUDY, alone):
+            self.assertTrue(schema.is_valid(experiment))
+            self.assertTrue(self.program_accepts("run", experiment))
+            self.assert_agreement("run", schema, mutations(experiment), BEYOND_EXPERIMENT_SCHEMA)
 
     def test_refused_documents_of_the_other_tests(self):
         """Listed by pointer and words: those that only the program can refuse."""
@@ -110,6 +117,7 @@ class Agreement(ProgramTest):
             ("/transfer_function/points/1", "sorted"),
             ("/transfer_function/points/2", "third"),
             ("/transfer_function", "no.json"),
+            ("/transfer_function", "2^500"),
             ("/signal/origin", "2^40"),
             ("/signal/direction", "direction"),
             ("/signal/volume/values", "12 numbers"),
@@ -126,6 +134,11 @@ class Agreement(ProgramTest):
             ("/published/0/row/colour", "column"),
             ("/checks/0/rows/field/0", "white"),
             ("/checks/0/column", "one of"),
+            ("/transfer_functions/1/name", "each name once"),
+            ("/transfer_functions/1/transfer_function/points/1", "sorted"),
+            ("/transfer_functions/1/transfer_function", "2^500"),
+            ("/measures/2/counts/1", "65"),
+            ("/checks/0/rows/transfer", "tent"),
         }
         for name, bad in (("case", test_eval.Refusals.bad), ("experiment", test_run.Refusals.bad)):
             schema = validator(name)
@@ -147,11 +160,12 @@ class Validity(ProgramTest):
 
     def test_committed_results(self):
         for path in sorted(SOURCE.glob("results/*.json")):
-            validator("result").validate(json.loads(path.read_text()))
+            document = json.loads(path.read_text())
+            validator(document["raytruth"].partition("/")[0]).validate(document)
 
     def test_results(self):
         absent = {"name": "absent", "kind": "volume", "volume": "no_such_volume"}
-        for document in (EXPERIMENT, changed(EXPERIMENT, "/fields/2", absent)):
+        for document in (EXPERIMENT, STUDY, changed(EXPERIMENT, "/fields/2", absent)):
             validator("result").validate(self.json_of("run", self.write("small.json", document)))
 
     def test_the_experiment_in_a_result_runs_and_gives_the_same_rows(self):
@@ -162,9 +176,10 @@ class Validity(ProgramTest):
 
     def test_names_are_those_of_the_catalogue(self):
         schemes = [entry["name"] for entry in self.json_of("list", "schemes", "--json")]
-        self.assertEqual(SCHEMAS["experiment"]["$defs"]["scheme"]["enum"], schemes)
-        self.assertEqual(SCHEMAS["case"]["$defs"]["case"]["properties"]["schemes"]["items"]["enum"], ["reference", *schemes])
-        for kind, name, place in [("fields", "experiment", "field"), ("measures", "experiment", "measure"),
+        self.assertEqual(SCHEMAS["case"]["$defs"]["scheme"]["enum"], schemes)
+        signal_schemes = [entry["name"] for entry in self.json_of("list", "schemes", "--json") if "signal_order" in entry]
+        self.assertEqual(SCHEMAS["experiment"]["$defs"]["signal_scheme"]["enum"], signal_schemes)
+        for kind, name, place in [("fields", "experiment", "field"), ("measures", "experiment", "measure"), ("transfers", "experiment", "transfer"),
                                   ("samplings", "experiment", "sampling"), ("samplings", "case", "sampling"), ("signals", "case", "signal")]:
             listed = {entry["name"] for entry in self.json_of("list", kind, "--json")}
             kinds = [option["properties"]["kind"] for option in SCHEMAS[name]["$defs"][place]["oneOf"]]

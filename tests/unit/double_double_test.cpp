@@ -29,6 +29,7 @@ TEST(DoubleDouble, OperationsAgreeWith50Digits) {
     EXPECT_LE(abs(exact(a + b) - (exact(a) + exact(b))), bound * (abs(exact(a)) + abs(exact(b))));
     EXPECT_LE(abs(exact(a - b) - (exact(a) - exact(b))), bound * (abs(exact(a)) + abs(exact(b))));
     EXPECT_LE(abs(exact(a * b.high) - exact(a) * Real50(b.high)), bound * abs(exact(a) * Real50(b.high)));
+    EXPECT_LE(abs(exact(a * b) - exact(a) * exact(b)), bound * abs(exact(a) * exact(b)));
     EXPECT_LE(abs(exact(a / b.high) - exact(a) / Real50(b.high)), bound * abs(exact(a) / Real50(b.high)));
   }
 }

@@ -23,9 +23,8 @@ struct ExactRay {
   }
 };
 
-/// By clipping against the six faces.
-inline ExactRay exact_ray(const Grid& grid, const Ray& ray) {
-  const auto unit = unit_direction(ray.direction);
+/// By clipping against the six faces, with `unit` for the ray's direction.
+inline ExactRay exact_ray(const Grid& grid, const Ray& ray, const std::array<Real50, 3>& unit) {
   Real50 begin = 0;
   Real50 end("1e100");
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -36,8 +35,8 @@ inline ExactRay exact_ray(const Grid& grid, const Ray& ray) {
       if (origin < low || origin > high) end = -1;
       continue;
     }
-    const Real50 a = (low - origin) / Real50(unit[axis]);
-    const Real50 b = (high - origin) / Real50(unit[axis]);
+    const Real50 a = (low - origin) / unit[axis];
+    const Real50 b = (high - origin) / unit[axis];
     begin = std::max(begin, std::min(a, b));
     end = std::min(end, std::max(a, b));
   }
@@ -45,9 +44,23 @@ inline ExactRay exact_ray(const Grid& grid, const Ray& ray) {
   if (result.length > ray.length) result.length = ray.length;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     result.direction[axis] = unit[axis];
-    result.start[axis] = Real50(ray.origin[axis]) + begin * Real50(unit[axis]);
+    result.start[axis] = Real50(ray.origin[axis]) + begin * unit[axis];
   }
   return result;
+}
+
+/// At the rounded unit direction.
+inline ExactRay exact_ray(const Grid& grid, const Ray& ray) {
+  const auto unit = unit_direction(ray.direction);
+  return exact_ray(grid, ray, {unit[0], unit[1], unit[2]});
+}
+
+/// At the exactly normalised direction.
+inline ExactRay exactly_directed_ray(const Grid& grid, const Ray& ray) {
+  std::array<Real50, 3> unit{ray.direction[0], ray.direction[1], ray.direction[2]};
+  const Real50 norm = sqrt(unit[0] * unit[0] + unit[1] * unit[1] + unit[2] * unit[2]);
+  for (Real50& component : unit) component /= norm;
+  return exact_ray(grid, ray, unit);
 }
 
 /// The chain of cubics of a trilinear ray without any walk: all crossings of all borders, sorted; in each interval the

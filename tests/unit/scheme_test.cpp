@@ -212,6 +212,9 @@ TEST(EveryScheme, TellsBinary32FromBinary64ByRounding) {
     close(low.order1(v[0], v[1]), high.order1(v[0], v[1]));
     close(low.order2_front(v[0], v[1], v[2], 0.5), high.order2_front(v[0], v[1], v[2], 0.5));
     close(low.order2_back(v[0], v[1], v[2], 0.5), high.order2_back(v[0], v[1], v[2], 0.5));
+    close(low.order3_front(v[0], v[1], v[2], v[3]), high.order3_front(v[0], v[1], v[2], v[3]));
+    close(low.order3_middle(v[0], v[1], v[2], v[3]), high.order3_middle(v[0], v[1], v[2], v[3]));
+    close(low.order3_back(v[0], v[1], v[2], v[3]), high.order3_back(v[0], v[1], v[2], v[3]));
     close(low.virtual_catmull_rom(v[0], v[1], v[2], v[3]), high.virtual_catmull_rom(v[0], v[1], v[2], v[3]));
     EXPECT_NEAR(to_double(low.virtual_sample({v[0], v[1], v[2], v[3]}, 0.375)),
                 high.virtual_sample({v[0], v[1], v[2], v[3]}, 0.375), 16 * 0x1p-24);
@@ -308,14 +311,43 @@ TEST(VirtualSamples, OfTheChordAreOrder1) {
   EXPECT_LE(xi_max(chord, approximation_of<VirtualLinear7>(signal, 1)), 4e-16);
 }
 
-TEST(VirtualSamples, RefuseUnequalSteps) {
+TEST(EveryScheme, RefusesUnequalStepsWhereItNeedsEqualOnes) {
   const Grid grid = random_field(16, 0, 1);
   Samples<double> samples;
   sample_cells(trace_trilinear(grid, random_ray(grid, 2.3, 1, 0)), samples);
   catalogue::for_each_scheme([&]<class S>() {
     SCOPED_TRACE(S::info.name);
-    EXPECT_EQ(refusal<S>(samples).empty(), !S::info.name.starts_with("virtual"));
+    EXPECT_EQ(refusal<S>(samples).empty(), !S::info.name.starts_with("virtual") && S::info.name != "order3");
   });
+}
+
+TEST(Order3, ReproducesTrilinearRaysFromThreeFetchesPerCell) {
+  const Grid grid = random_field(16, 0, 1);
+  const Chain<3> signal = trace_trilinear(grid, random_ray(grid, 8.3, 1, 0));
+  Samples<double> samples;
+  sample_cells(signal, samples, 3);
+  ASSERT_TRUE(refusal<Order3>(samples).empty());
+  EXPECT_EQ(fetches<Order3>(samples), static_cast<std::int64_t>(3 * signal.pieces.size() + 1));
+  Chain<3> approximation;
+  approximate<Order3>(signal, samples, approximation);
+  EXPECT_LE(xi_max(signal, approximation), 1e-14);
+  // A constant step that crosses the cells' borders meets their kinks.
+  EXPECT_GE(xi_max(signal, approximation_of<Order3>(signal, 0.25)), 1e-3);
+}
+
+TEST(Order3, LeftOverIntervalsLieOnTheLastCubicAndAShortOneIsLinear) {
+  const auto signal = smooth_signal<3, double>(7, 2.1);
+  const Chain<3> approximation = approximation_of<Order3>(signal, 0.25);
+  ASSERT_EQ(approximation.pieces.size(), 9U);
+  Samples<double> samples;
+  sample_constant(signal, 0.25, samples);
+  const Chain<3> line = approximation_of<Order1>(signal, 0.25);
+  EXPECT_EQ(approximation.pieces[8].polynomial, line.pieces[8].polynomial);
+  for (std::size_t k = 0; k < 8; ++k)
+    EXPECT_NEAR(approximation.pieces[k].polynomial.value(0.3), signal.value(approximation.pieces[k].start + 0.075),
+                1e-15);
+  EXPECT_EQ(slab_intervals<Order3>(samples, 0), 3U);
+  EXPECT_EQ(slab_intervals<Order3>(samples, 6), 1U);
 }
 
 TEST(VirtualSamples, CountAsSamplesWhereThereAreTooMany) {

@@ -8,6 +8,7 @@ namespace {
 const RowNames names{.columns = {"measure", "field", "scheme", "xi", "xi_p05", "xi_p95", "status", "why"},
                      .measures = {"signal_error"},
                      .fields = {"white", "bonsai"},
+                     .transfers = {},
                      .schemes = {"order1", "order2"}};
 
 const std::vector<Column> columns{{.name = "xi", .unit = "", .description = "", .radius = "xi_radius"}};

@@ -25,6 +25,7 @@ Experiment experiment_of(std::int64_t rays) {
           .seed = 1,
           .fields = {},
           .rays = {.count = rays, .length = ray_length},
+          .transfers = {},
           .samplings = {},
           .schemes = {},
           .measures = {},

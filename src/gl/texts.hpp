@@ -1,0 +1,14 @@
+#pragma once
+
+namespace raytruth {
+
+/// Texts of shaders, which the build puts into the program as they are.
+
+extern const char* const rule_prelude;      ///< of src/rules/prelude.glsl
+extern const char* const rule_texts;        ///< of the rules, in the order of src/rules/rules.hpp
+extern const char* const sampled_march;     ///< of src/gl/sampled_march.glsl
+extern const char* const texture_unit;      ///< of src/textures/texture_unit.glsl
+extern const char* const texture_look_ups;  ///< of src/gl/texture_look_ups.glsl
+extern const char* const renderer_shader;   ///< of src/gl/hand_written_renderer.frag
+
+}  // namespace raytruth

@@ -1,0 +1,83 @@
+#include "kernels/gauss_legendre.hpp"
+
+#include "core/real.hpp"
+#include "kernels/level.hpp"
+#include "signals/piecewise_polynomial.hpp"
+
+#include <boost/math/special_functions/legendre.hpp>
+
+#include <mutex>
+
+namespace raytruth {
+
+namespace {
+
+struct Rule {
+  std::vector<Real50> nodes;  ///< on [0, 1], ascending
+  std::vector<Real50> weights;
+};
+
+Rule gauss_legendre(std::size_t count) {
+  const int n = static_cast<int>(count);
+  std::vector<Real50> roots = boost::math::legendre_p_zeros<Real50>(n);  // those that are not negative, ascending
+  Rule rule;
+  const auto add = [&](const Real50& z) {
+    const Real50 slope = boost::math::legendre_p_prime(n, z);
+    rule.nodes.push_back((1 + z) / 2);
+    rule.weights.push_back(1 / ((1 - z * z) * slope * slope));
+  };
+  for (std::size_t i = roots.size(); i-- > 0;)
+    if (roots[i] != 0) add(-roots[i]);
+  for (const Real50& root : roots) add(root);
+  return rule;
+}
+
+/// Bernstein polynomials 0 ... degree at every node, rounded to binary64, in padded rows.
+template <std::size_t Count>
+std::array<std::vector<double>, Count> bernstein_rows(const Rule& rule, std::size_t stride) {
+  constexpr int degree = static_cast<int>(Count) - 1;
+  std::array<std::vector<double>, Count> rows;
+  Real50 binomial = 1;
+  for (int j = 0; j <= degree; ++j) {
+    auto& row = rows[static_cast<std::size_t>(j)];
+    row.assign(stride, 0);
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+      const Real50& u = rule.nodes[i];
+      row[i] = to_double(binomial * pow(u, j) * pow(Real50(1 - u), degree - j));
+    }
+    binomial = binomial * (degree - j) / (j + 1);
+  }
+  return rows;
+}
+
+template <int Degree>
+NodeTable<Degree> make_table(std::size_t count) {
+  const Rule rule = gauss_legendre(count);
+  NodeTable<Degree> table;
+  table.count = count;
+  table.stride = (count + lane_count - 1) / lane_count * lane_count;
+  table.nodes.assign(table.stride, 0);
+  table.weights.assign(table.stride, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    table.nodes[i] = to_double(rule.nodes[i]);
+    table.weights[i] = to_double(rule.weights[i]);
+  }
+  table.signal_basis = bernstein_rows<Degree + 1>(rule, table.stride);
+  table.depth_basis = bernstein_rows<Degree + 2>(rule, table.stride);
+  return table;
+}
+
+}  // namespace
+
+template <int Degree>
+const NodeTable<Degree>& node_table(std::size_t count) {
+  static std::array<std::once_flag, most_nodes + 1> is_made;
+  static std::array<NodeTable<Degree>, most_nodes + 1> tables;
+  std::call_once(is_made[count], [count] { tables[count] = make_table<Degree>(count); });
+  return tables[count];
+}
+
+template const NodeTable<3>& node_table<3>(std::size_t);
+template const NodeTable<largest_degree>& node_table<largest_degree>(std::size_t);
+
+}  // namespace raytruth

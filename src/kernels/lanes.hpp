@@ -1,0 +1,114 @@
+#pragma once
+
+#include "kernels/level.hpp"
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace raytruth::inline RAYTRUTH_LEVEL {
+
+/// The bits of Lanes, or for every lane whether something holds: all bits or none.
+struct alignas(8 * lane_count) LaneBits {
+  using Vector = std::int64_t __attribute__((vector_size(8 * lane_count)));
+
+  Vector vector{};
+
+  friend LaneBits operator+(const LaneBits& a, const LaneBits& b) { return {a.vector + b.vector}; }
+  friend LaneBits operator|(const LaneBits& a, std::int64_t b) { return {a.vector | b}; }
+  friend LaneBits operator&(const LaneBits& a, std::int64_t b) { return {a.vector & b}; }
+  friend LaneBits operator<<(const LaneBits& a, int b) { return {a.vector << b}; }
+  friend LaneBits operator>>(const LaneBits& a, int b) { return {a.vector >> b}; }
+};
+
+/// Eight binary64 numbers that are computed with side by side: one register, or two, or four, as the processor has
+/// them.
+struct alignas(8 * lane_count) Lanes {
+  using Vector = double __attribute__((vector_size(8 * lane_count)));
+
+  Vector vector{};
+
+  Lanes() = default;
+  // Implicit, so that one template serves Lanes and double: the same number in all lanes.
+  Lanes(double x) : vector(x - Vector{}) {}  // NOLINT(google-explicit-constructor)
+
+  explicit Lanes(const Eight& numbers) : Lanes(load(numbers.data())) {}
+
+  static Lanes load(const double* from) {
+    Lanes result;
+    std::memcpy(&result.vector, from, sizeof(Vector));
+    return result;
+  }
+
+  explicit operator Eight() const {
+    Eight numbers;
+    std::memcpy(numbers.data(), &vector, sizeof(Vector));
+    return numbers;
+  }
+
+  double operator[](std::size_t lane) const { return vector[lane]; }
+  void set(std::size_t lane, double x) { vector[lane] = x; }
+
+  Lanes& operator+=(const Lanes& b) { return vector += b.vector, *this; }
+  Lanes& operator-=(const Lanes& b) { return vector -= b.vector, *this; }
+  Lanes& operator*=(const Lanes& b) { return vector *= b.vector, *this; }
+  Lanes& operator/=(const Lanes& b) { return vector /= b.vector, *this; }
+  friend Lanes operator+(const Lanes& a, const Lanes& b) { return Lanes(a) += b; }
+  friend Lanes operator-(const Lanes& a, const Lanes& b) { return Lanes(a) -= b; }
+  friend Lanes operator*(const Lanes& a, const Lanes& b) { return Lanes(a) *= b; }
+  friend Lanes operator/(const Lanes& a, const Lanes& b) { return Lanes(a) /= b; }
+  friend Lanes operator-(const Lanes& a) { return Lanes(0.0) -= a; }
+  friend LaneBits operator<(const Lanes& a, const Lanes& b) { return {a.vector < b.vector}; }
+};
+
+// What follows is written for Lanes and for double alike.
+
+inline Lanes select(const LaneBits& which, const Lanes& a, const Lanes& b) {
+  Lanes result;
+  result.vector = which.vector ? a.vector : b.vector;
+  return result;
+}
+inline double select(bool which, double a, double b) { return which ? a : b; }
+
+inline LaneBits to_bits(const Lanes& x) { return std::bit_cast<LaneBits>(x); }
+inline std::int64_t to_bits(double x) { return std::bit_cast<std::int64_t>(x); }
+inline Lanes from_bits(const LaneBits& x) { return std::bit_cast<Lanes>(x); }
+inline double from_bits(std::int64_t x) { return std::bit_cast<double>(x); }
+
+/// b where either is not a number.
+template <class Vector>
+Vector larger(const Vector& a, const Vector& b) {
+  return select(b < a, a, b);
+}
+
+/// b where either is not a number.
+template <class Vector>
+Vector smaller(const Vector& a, const Vector& b) {
+  return select(a < b, a, b);
+}
+
+template <class Vector>
+Vector magnitude(const Vector& x) {
+  return from_bits(to_bits(x) & INT64_MAX);
+}
+
+/// Whether something holds in at least one lane.
+inline bool any(const LaneBits& which) {
+  LaneBits::Vector bits = which.vector;
+  bits |= __builtin_shufflevector(bits, bits, 4, 5, 6, 7, 0, 1, 2, 3);
+  bits |= __builtin_shufflevector(bits, bits, 2, 3, 0, 1, 6, 7, 4, 5);
+  return (bits[0] | bits[1]) != 0;
+}
+
+inline double sum(const Lanes& x) { return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7])); }
+
+inline double largest(const Lanes& x) {
+  double result = x[0];
+  for (std::size_t lane = 1; lane < lane_count; ++lane) result = larger(result, x[lane]);
+  return result;
+}
+inline double largest(double x) { return x; }
+
+}  // namespace raytruth::inline RAYTRUTH_LEVEL

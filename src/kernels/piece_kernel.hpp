@@ -1,0 +1,320 @@
+#pragma once
+
+#include "kernels/exponential.hpp"
+#include "kernels/gauss_legendre.hpp"
+#include "kernels/lanes.hpp"
+#include "kernels/linear_piece.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+// How the radius comes about. The integrand (1 - x) r T, or x r T, is an entire function of u. Gauss's rule errs by at
+// most 64/15 M rho^(-2n) / (1 - rho^-2) on [-1, 1], M the largest magnitude on the ellipse with foci -1, 1 and
+// semiaxes' sum rho (L. N. Trefethen, Is Gauss quadrature better than Clenshaw-Curtis?, 2008, theorem 4.5). On that
+// ellipse Chebyshev polynomial k is at most a_k = (rho^k + rho^-k) / 2, which bounds x and tau by their Chebyshev
+// coefficients, and |T| = exp(-Re Q) by exp(-kappa_0 + sum_k |kappa_k| a_k), kappa those of the depth Q(u). The bound
+// holds for every rho; a few fixed ones are tried and the smallest n is taken.
+//
+// Rounding: in Bernstein form x, tau and Q are sums of terms of one sign as long as x stays in [0, 1], so each comes
+// with a relative error of a few units, and exp(-Q) with Q times that; the sum of Q T r over the nodes is carried
+// along.
+
+namespace raytruth::inline RAYTRUTH_LEVEL {
+
+constexpr double goal = -51;         ///< log2 of the truncation error, relative to the integral
+constexpr double deepest = 32;       ///< optical depth in one go; deeper pieces are halved
+constexpr double opaque_depth = 92;  ///< exp(-92) < 2^-132: what lies behind is bounded, not computed
+constexpr double most_error = 1;     ///< of an optical depth; beyond it, the crude bound
+constexpr double smallest = 0x1p-1000;
+constexpr double slack = 1 + 0x1p-20;  ///< second-order terms, and the rounding of the error bounds themselves
+constexpr double log2_e = 1.4426951;   // rounded up
+constexpr double ln_2 = 0.6931471805599453;
+
+/// Rounding of the depth at a node, relative: coefficients, their partial sums, the basis, the sum, the length.
+template <int Degree>
+constexpr double depth_units = 2 * Degree + 15;
+
+template <int Degree>
+using Matrix = std::array<std::array<double, Degree + 1>, Degree + 1>;
+
+constexpr double binomial(int n, int k) {
+  double result = 1;
+  for (int i = 1; i <= k; ++i) result = result * (n - k + i) / i;
+  return result;
+}
+
+/// [k][j]: Chebyshev coefficient k on [-1, 1] of Bernstein polynomial j on [0, 1]. Exact: all are dyadic and short.
+///     B_j(u) = sum_m (-1)^(m-j) C(n, m) C(m, j) u^m,  u^m = 2^(1-2m) (C(2m, m)/2 + sum_{k>0} C(2m, m-k) T_k(2u - 1)).
+template <int Degree>
+constexpr Matrix<Degree> chebyshev_from_bernstein() {
+  Matrix<Degree> matrix{};
+  for (int j = 0; j <= Degree; ++j)
+    for (int m = j; m <= Degree; ++m) {
+      double factor = 2 * binomial(Degree, m) * binomial(m, j) * ((m - j) % 2 == 0 ? 1 : -1);
+      for (int i = 0; i < m; ++i) factor /= 4;
+      for (int k = 0; k <= m; ++k)
+        matrix[static_cast<std::size_t>(k)][static_cast<std::size_t>(j)] +=
+            factor * binomial(2 * m, m - k) * (k == 0 ? 0.5 : 1);
+    }
+  return matrix;
+}
+
+/// Numbers of an ellipse; `Vector` is double, or Lanes: eight ellipses.
+template <int Degree, class Vector>
+struct Ellipse {
+  std::array<Vector, Degree + 2> largest_chebyshev{};  ///< a_k
+  Vector log2_factor{};                                ///< of 64/15 / (1 - rho^-2)
+  Vector nodes_per_bit{};                              ///< 1 / (2 log2(rho))
+};
+
+/// Close together where the exponential rules, far apart where the integrand is nearly a polynomial.
+constexpr std::array<double, lane_count> ellipse_sums{1.5, 2, 2.8, 4, 5.6, 9, 16, 100};
+
+template <int Degree>
+struct Ellipses {
+  std::array<Ellipse<Degree, double>, lane_count> one_by_one;
+  Ellipse<Degree, Lanes> side_by_side;
+
+  Ellipses() {
+    for (std::size_t i = 0; i < lane_count; ++i) {
+      const double rho = ellipse_sums[i];
+      auto& ellipse = one_by_one[i];
+      for (int k = 0; k <= Degree + 1; ++k)
+        ellipse.largest_chebyshev[static_cast<std::size_t>(k)] = slack * (std::pow(rho, k) + std::pow(rho, -k)) / 2;
+      ellipse.log2_factor = std::log2(slack * 64 / 15 / (1 - 1 / (rho * rho)));
+      ellipse.nodes_per_bit = slack / (2 * std::log2(rho));
+      for (std::size_t k = 0; k < Degree + 2; ++k)
+        side_by_side.largest_chebyshev[k].set(i, ellipse.largest_chebyshev[k]);
+      side_by_side.log2_factor.set(i, ellipse.log2_factor);
+      side_by_side.nodes_per_bit.set(i, ellipse.nodes_per_bit);
+    }
+  }
+};
+
+template <int Degree>
+const Ellipses<Degree>& ellipses() {
+  static const Ellipses<Degree> table;
+  return table;
+}
+
+/// What follows from the coefficients of a piece before any quadrature.
+template <int Degree, class Vector>
+struct Prepared {
+  Vector reach{};                               ///< of |x| and |1 - x|
+  Vector slope{};                               ///< |tau_1 - tau_0|
+  Vector below{};                               ///< how far the terms of tau can be negative
+  Vector depth_below{};                         ///< the same of the depth
+  std::array<Vector, Degree + 1> extinction{};  ///< Bernstein coefficients of tau
+  std::array<Vector, Degree + 2> depth{};       ///< those of Q
+  Vector depth_from_x{};                        ///< error of the depth by that of x
+};
+
+template <int Degree, class Vector>
+Prepared<Degree, Vector> prepare(const LinearPiece<Degree, Vector>& piece) {
+  Prepared<Degree, Vector> result;
+  const Vector zero{};
+  const Vector scale = piece.length * (1.0 / (Degree + 1));
+  Vector below_sum{};
+  for (std::size_t j = 0; j <= Degree; ++j) {
+    const Vector x = piece.x[j];
+    const Vector y = 1.0 - x;
+    result.reach = larger(result.reach, larger(magnitude(x), magnitude(y)));
+    const Vector below = piece.extinction_at_0 * larger(zero, -y) + piece.extinction_at_1 * larger(zero, -x);
+    result.below = larger(result.below, below);
+    below_sum += below;
+    result.extinction[j] = piece.extinction_at_0 * y + piece.extinction_at_1 * x;
+    result.depth[j + 1] = result.depth[j] + scale * result.extinction[j];
+  }
+  result.depth_below = 2 * scale * below_sum;
+  result.slope = magnitude(piece.extinction_at_1 - piece.extinction_at_0);
+  result.depth_from_x = piece.length * result.slope * piece.x_error;
+  return result;
+}
+
+/// log2 of the truncation error that is as good as none: a share of the integral, for which 1 - exp(-D) >= D / (1 + D);
+/// where tau nearly vanishes, of what the extinctions at 0 and 1 would make it.
+template <int Degree, class Vector>
+Vector log2_goal(const LinearPiece<Degree, Vector>& piece, const Prepared<Degree, Vector>& prepared, bool associated) {
+  const Vector depth = prepared.depth[Degree + 1];
+  const Vector largest_extinction = larger(piece.extinction_at_0, piece.extinction_at_1);
+  const Vector density =
+      associated ? larger(larger<Vector>(depth / piece.length, 0x1p-40 * largest_extinction), Vector(smallest))
+                 : Vector(1);
+  return log2_above(larger<Vector>(density / (1 + depth), smallest)) + (goal - 0.1);
+}
+
+/// The number of nodes, not yet rounded up, by which the truncation error falls to 2^log2_goal, by one ellipse each. Of
+/// a piece and an ellipse one may be in lanes.
+template <int Degree, class Piece, class Size>
+auto nodes_for(const LinearPiece<Degree, Piece>& piece, const Prepared<Degree, Piece>& prepared, bool associated,
+               const Piece& log2_goal, const std::array<Piece, Degree + 1>& chebyshev,
+               const Ellipse<Degree, Size>& ellipse) {
+  using Vector = decltype(Piece{} * Size{});
+  const auto& a = ellipse.largest_chebyshev;
+  // Coefficients of the x that is meant, not only of the one at hand.
+  const Piece uncertainty = (4.0 * Degree + 8) * unit_roundoff * prepared.reach + 2 * piece.x_error;
+  const Piece half = 0.5 * piece.length;
+  const Piece slope = piece.extinction_at_1 - piece.extinction_at_0;
+  const Piece extinction_0 = piece.extinction_at_0 * (1 - chebyshev[0]) + piece.extinction_at_1 * chebyshev[0];
+
+  Vector x_part{};
+  Vector exponent{};
+  Piece mean{};  // kappa_0: Q vanishes at -1
+  const Piece depth_uncertainty = half * (prepared.slope + piece.extinction_at_0) * uncertainty;
+  for (std::size_t k = 1; k <= Degree + 1; ++k) {
+    if (k <= Degree) x_part += (magnitude(chebyshev[k]) + uncertainty) * a[k];
+    const Piece before = k == 1 ? 2 * extinction_0 : k - 1 <= Degree ? slope * chebyshev[k - 1] : Piece{};
+    const Piece after = k + 1 <= Degree ? slope * chebyshev[k + 1] : Piece{};
+    const Piece kappa = half * (before - after) * (0.5 / static_cast<double>(k));
+    exponent += (magnitude(kappa) + depth_uncertainty) * a[k];
+    mean += k % 2 == 1 ? kappa : Piece(-kappa);
+    mean -= depth_uncertainty;
+  }
+  const Vector x_reach = (larger(magnitude(chebyshev[0]), magnitude(Piece(1 - chebyshev[0]))) + uncertainty) + x_part;
+  Vector log2_largest = log2_above(x_reach) + (log2_e * exponent - log2_e * mean) + ellipse.log2_factor;
+  if (associated)
+    log2_largest += log2_above(Vector(larger(extinction_0, Piece{}) + prepared.slope * uncertainty +
+                                      prepared.slope * x_part + Vector(smallest)));
+  return Vector((log2_largest - log2_goal) * ellipse.nodes_per_bit);
+}
+
+template <int Degree, class Vector>
+std::array<Vector, Degree + 1> chebyshev_coefficients(const LinearPiece<Degree, Vector>& piece) {
+  constexpr auto matrix = chebyshev_from_bernstein<Degree>();
+  std::array<Vector, Degree + 1> result{};
+  for (std::size_t k = 0; k <= Degree; ++k)
+    for (std::size_t j = 0; j <= Degree; ++j) result[k] += matrix[k][j] * piece.x[j];
+  return result;
+}
+
+/// Sums over nodes of weight times T times what the names say.
+template <class Vector>
+struct Sums {
+  Vector weight_0{};
+  Vector weight_1{};
+  Vector transmitted{};  ///< 1
+  Vector depth{};        ///< r Q
+  Vector position{};     ///< r u
+
+  template <class Number>
+  void add(bool associated, const Number& node, const Number& weight, const Vector& x, const Vector& extinction,
+           const Vector& depth_here) {
+    const Vector here = weight * exponential(Vector(-depth_here));
+    const Vector density = associated ? Vector(here * extinction) : here;
+    weight_0 += density * (1 - x);
+    weight_1 += density * x;
+    transmitted += here;
+    depth += density * depth_here;
+    position += density * node;
+  }
+};
+
+template <int Degree, class Vector>
+PieceIntegral<Vector> finish(const LinearPiece<Degree, Vector>& piece, const Prepared<Degree, Vector>& prepared,
+                             bool associated, const Sums<Vector>& sums, const Vector& count,
+                             const Vector& log2_truncation) {
+  constexpr double unit = unit_roundoff;
+  const Vector zero{};
+  const Vector one = Vector(1);
+  const Vector whole = prepared.depth[Degree + 1];
+  const auto& [reach, slope, below, depth_below, extinction, depth, depth_from_x] = prepared;
+
+  PieceIntegral<Vector> result;
+  result.weight_0 = piece.length * sums.weight_0;
+  result.weight_1 = piece.length * sums.weight_1;
+  result.depth = whole;
+  result.nodes = count;
+  const Vector depth_rounding = depth_units<Degree> * unit * (whole + 2 * depth_below);
+  result.depth_error = slack * (depth_rounding + depth_from_x);
+
+  // Sums of magnitudes: those at hand, unless a term is negative.
+  const Vector sum = sums.weight_0 + sums.weight_1 + 2 * sums.transmitted * below;
+  const Vector depth_sum = select(zero < depth_below, sum * (whole + 2 * depth_below), sums.depth);
+  const Vector position_sum = select(zero < depth_below, sum, sums.position);
+  // x at a node errs by Degree + 5 units, tau by Degree + 8, their product with weight and T, and the sum, by count
+  // + 6.
+  Vector error = sum * (piece.x_error + reach * (exponential_error + (count + (2.0 * Degree + 19)) * unit));
+  error += reach * (1 + result.depth_error) *
+           (depth_units<Degree> * unit * (depth_sum + 2 * sum * depth_below) + position_sum * depth_from_x);
+  if (associated) error += sums.transmitted * reach * slope * piece.x_error;
+  error = piece.length * (error + exponential(Vector(ln_2 * log2_truncation)));
+  // An error of the depth above 1, a sum out of range: the integrals of tau T and T are at most 1 and length.
+  const Vector crude =
+      magnitude(result.weight_0) + magnitude(result.weight_1) + (associated ? one : piece.length) * reach;
+  result.weight_error = slack * select(result.depth_error < Vector(most_error), error, crude);
+  return result;
+}
+
+template <class Vector>
+Vector rounded_up(const Vector& nodes) {
+  // As an integer, by way of the magic number; the half above makes up for rounding to nearest.
+  return (larger<Vector>(1, nodes) + 0.5 + 0x1.8p52) - 0x1.8p52;
+}
+
+/// Pieces in lanes, or one piece in a double: node after node. `nodes` above most_nodes: not integrated.
+template <int Degree, class Vector>
+[[gnu::flatten]] PieceIntegral<Vector> integrate_node_by_node(const LinearPiece<Degree, Vector>& piece,
+                                                              bool associated) {
+  const auto prepared = prepare(piece);
+  const Vector goal_here = log2_goal(piece, prepared, associated);
+  const auto chebyshev = chebyshev_coefficients(piece);
+  Vector nodes = Vector(1e9);
+  for (const auto& ellipse : ellipses<Degree>().one_by_one)
+    nodes = smaller(nodes, nodes_for(piece, prepared, associated, goal_here, chebyshev, ellipse));
+  nodes = rounded_up(nodes);
+  constexpr double too_many = most_nodes + 1;
+  nodes = select(prepared.depth[Degree + 1] < Vector(deepest), smaller<Vector>(nodes, too_many), Vector(too_many));
+  // Pieces that are too deep are done again by the caller; they do not make the others pay.
+  const double count = largest(select(nodes < Vector(too_many), nodes, Vector(1)));
+  const auto& table = node_table<Degree>(static_cast<std::size_t>(count));
+
+  Sums<Vector> sums;
+  for (std::size_t i = 0; i < table.count; ++i) {
+    Vector x{};
+    Vector depth{};
+    Vector extinction{};
+    for (std::size_t j = 0; j <= Degree; ++j) {
+      x += table.signal_basis[j][i] * piece.x[j];
+      extinction += table.signal_basis[j][i] * prepared.extinction[j];
+      depth += table.depth_basis[j + 1][i] * prepared.depth[j + 1];
+    }
+    sums.add(associated, table.nodes[i], table.weights[i], x, extinction, depth);
+  }
+  auto result = finish(piece, prepared, associated, sums, Vector(count), goal_here);
+  result.nodes = select(nodes < Vector(too_many), result.nodes, nodes);
+  return result;
+}
+
+/// One piece: first the ellipses in lanes, then the nodes.
+template <int Degree>
+[[gnu::flatten]] PieceIntegral<> integrate_nodes_side_by_side(const LinearPiece<Degree>& piece, bool associated) {
+  const auto prepared = prepare(piece);
+  const double goal_here = log2_goal(piece, prepared, associated);
+  const Lanes by_ellipse =
+      nodes_for(piece, prepared, associated, goal_here, chebyshev_coefficients(piece), ellipses<Degree>().side_by_side);
+  double nodes = by_ellipse[0];
+  for (std::size_t i = 1; i < lane_count; ++i) nodes = smaller(nodes, by_ellipse[i]);
+  nodes = rounded_up(nodes);
+  if (!(nodes <= most_nodes && prepared.depth[Degree + 1] < deepest)) return {.nodes = most_nodes + 1};
+  const auto& table = node_table<Degree>(static_cast<std::size_t>(nodes));
+
+  Sums<Lanes> sums;
+  for (std::size_t i = 0; i < table.count; i += lane_count) {
+    Lanes x{};
+    Lanes depth{};
+    Lanes extinction{};
+    for (std::size_t j = 0; j <= Degree; ++j) {
+      const Lanes basis = Lanes::load(&table.signal_basis[j][i]);
+      x += basis * piece.x[j];
+      extinction += basis * prepared.extinction[j];
+      depth += Lanes::load(&table.depth_basis[j + 1][i]) * prepared.depth[j + 1];
+    }
+    sums.add(associated, Lanes::load(&table.nodes[i]), Lanes::load(&table.weights[i]), x, extinction, depth);
+  }
+  return finish<Degree, double>(
+      piece, prepared, associated,
+      {sum(sums.weight_0), sum(sums.weight_1), sum(sums.transmitted), sum(sums.depth), sum(sums.position)}, nodes,
+      goal_here);
+}
+
+}  // namespace raytruth::inline RAYTRUTH_LEVEL

@@ -1,0 +1,280 @@
+"""`raytruth vectors` and `raytruth score`: the conformance vectors, and what answers to them are worth."""
+
+import json
+import math
+import unittest
+
+import jsonschema
+
+import exact_integral
+from support import SOURCE, ProgramTest, changed
+
+SCHEMA = json.loads((SOURCE / "experiments/schemas/vectors.json").read_text())
+COMMITTED = SOURCE / "results/vectors.json"
+
+
+def csv(answers):
+    return "id,r,g,b,opacity\n" + "".join(f"{name},{','.join(map(repr, numbers))}\n" for name, numbers in answers.items())
+
+
+def truths(vectors):
+    """The certified answers themselves."""
+    references = {vector["id"]: vector["reference"] for vector in vectors}
+    return {name: [*reference["color"], reference["opacity"]] for name, reference in references.items()}
+
+
+class Vectors(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.committed = json.loads(COMMITTED.read_text())
+
+    def test_schema_describes_them(self):
+        jsonschema.Draft202012Validator.check_schema(SCHEMA)
+        for document in (self.committed, self.json_of("vectors", "--seed", "7")):
+            jsonschema.Draft202012Validator(SCHEMA).validate(document)
+
+    def test_ids_and_levels(self):
+        ids = [vector["id"] for vector in self.committed["vectors"]]
+        self.assertEqual(len(set(ids)), len(ids))
+        levels = [level["level"] for level in self.committed["levels"]]
+        self.assertEqual(levels, SCHEMA["$defs"]["level"]["enum"])
+        self.assertEqual([level["difficulty"] for level in self.committed["levels"]], list(range(1, len(levels) + 1)))
+        for level in levels:
+            count = sum(vector["level"] == level for vector in self.committed["vectors"])
+            self.assertTrue(10 <= count <= 20, (level, count))
+        self.assertLess(COMMITTED.stat().st_size, 200_000)
+
+    def test_every_number_is_right_to_its_bound(self):
+        """Against 60 decimal digits, computed in Python from what the schema says."""
+        for vector in self.committed["vectors"]:
+            with self.subTest(id=vector["id"]):
+                color, opacity = exact_integral.integrate(vector)
+                reference = vector["reference"]
+                bound = exact_integral.Decimal(reference["error_bound"])
+                for exact, stated in zip([*color, opacity], [*reference["color"], reference["opacity"]]):
+                    self.assertLessEqual(abs(exact - exact_integral.Decimal(stated)), bound)
+
+    def test_bounds_leave_digits_to_count(self):
+        for vector in self.committed["vectors"]:
+            reference = vector["reference"]
+            self.assertLess(reference["error_bound"], 1e-12 * min(reference["opacity"], max(reference["color"])), vector["id"])
+
+    def test_committed_ones_are_these(self):
+        """The same questions bit by bit; answers within both bounds, for releases of Arb may differ."""
+        made = self.json_of("vectors")
+        for document in (made, committed := json.loads(COMMITTED.read_text())):
+            document["references"] = [vector.pop("reference") for vector in document["vectors"]]
+        for here, there in zip(made.pop("references"), committed.pop("references")):
+            bound = here["error_bound"] + there["error_bound"]
+            for x, y in zip([*here["color"], here["opacity"]], [*there["color"], there["opacity"]]):
+                self.assertLessEqual(abs(x - y), bound)
+        self.assertEqual(made, committed)
+
+    def test_same_bytes_from_every_run(self):
+        text = self.output_of("vectors")
+        self.assertEqual(self.output_of("vectors", "--seed", "1"), text)
+        self.assertEqual(self.output_of("vectors", "-o", "v.json"), "")
+        self.assertEqual((self.folder / "v.json").read_text(), text)
+        self.assertEqual(self.names_in_folder(), ["v.json"])
+        self.assertNotEqual(self.json_of("vectors", "--seed", "2")["vectors"], json.loads(text)["vectors"])
+
+    def test_rays_are_cases_for_eval(self):
+        """So anyone can ask the program about one of them; the bound may be wider, for eval trusts no chain."""
+        rays = [vector for vector in self.committed["vectors"] if "signal" in vector]
+        cases = [
+            {
+                **{key: vector[key] for key in ("signal", "transfer_function", "emission")},
+                "sampling": {"kind": "cells"},
+                "schemes": ["reference"],
+            }
+            for vector in rays
+        ]
+        for vector, answer in zip(rays, self.json_of("eval", "-", stdin=cases)):
+            with self.subTest(id=vector["id"]):
+                here, there = answer["reference"], vector["reference"]
+                bound = here["error_bound"] + there["error_bound"]
+                for x, y in zip([*here["color"], here["opacity"]], [*there["color"], there["opacity"]]):
+                    self.assertLessEqual(abs(x - y), bound)
+
+    def test_what_cannot_be_written(self):
+        self.assert_refused(self.run_program("vectors", "-o", "absent/v.json"), "absent/v.json: ", "cannot be written")
+        self.assert_refused(self.run_program("vectors", "--seed", "-1"), "--seed")
+        self.assert_refused(self.run_program("vectors", "--seed", "x"), "--seed")
+
+
+class Scores(ProgramTest):
+    """Three vectors whose answers can be judged by hand."""
+
+    def setUp(self):
+        super().setUp()
+        reference = {"color": [0.5, 0.25, 0], "opacity": 0.125, "error_bound": 1e-13}
+        scene = {"emission": "plain", "slab": {"front": 0, "back": 1, "length": 1}, "transfer_function": {"points": []}}
+        self.document = {
+            "raytruth": "vectors/1",
+            "seed": 1,
+            "levels": [],
+            "vectors": [
+                {"id": "a", "level": "smooth", **scene, "reference": reference},
+                {"id": "b", "level": "smooth", **scene, "reference": reference},
+                {"id": "c", "level": "jump", **scene, "reference": {**reference, "color": [1e-9, 0, 0], "error_bound": 1e-25}},
+            ],
+        }
+        self.vectors = self.write("vectors.json", self.document)
+        self.answers = truths(self.document["vectors"])
+
+    def score(self, text):
+        return {level["level"]: level for level in self.json_of("score", self.vectors, self.write("answers.csv", text), "--json")}
+
+    def test_digits(self):
+        self.answers["a"] = [0.5, 0.25 + 0.5e-3, 0, 0.125]  # against the largest channel, 0.5
+        self.answers["b"] = [0.5, 0.25, 0, 0.125 - 0.125e-5]
+        self.answers["c"] = [1.01e-9, 0, 0, 0.125]
+        scores = self.score(csv(self.answers))
+        self.assertEqual(list(scores), ["smooth", "jump", "all"])
+        self.assertEqual(list(scores["smooth"]), ["level", "cases", "answered", "digits_min", "digits_median", "worst"])
+        self.assertAlmostEqual(scores["smooth"]["digits_min"], 3)
+        self.assertAlmostEqual(scores["smooth"]["digits_median"], 4)
+        self.assertEqual((scores["smooth"]["worst"], scores["smooth"]["cases"]), ("a", 2))
+        self.assertAlmostEqual(scores["jump"]["digits_min"], 2)
+        self.assertEqual((scores["all"]["worst"], scores["all"]["cases"], scores["all"]["answered"]), ("c", 3, 3))
+        self.assertAlmostEqual(scores["all"]["digits_median"], 3)
+
+    def test_digits_end_at_the_bound_and_at_zero(self):
+        scores = self.score(csv(self.answers))
+        self.assertAlmostEqual(scores["smooth"]["digits_min"], -math.log10(1e-13 / 0.125))
+        self.assertAlmostEqual(scores["jump"]["digits_min"], 53 * math.log10(2))
+        self.answers["c"] = [1e-9, 0, 1e300, 0.125]
+        self.assertEqual(self.score(csv(self.answers))["jump"]["digits_min"], 0)
+
+    def test_table(self):
+        self.answers["a"] = [0.5, 0.25 + 0.5e-3, 0, 0.125]
+        header, *lines = self.output_of("score", self.vectors, self.write("answers.csv", csv(self.answers))).splitlines()
+        self.assertEqual(header.split(), ["level", "cases", "answered", "digits:", "least", "median", "worst", "case"])
+        self.assertEqual([line.split()[0] for line in lines], ["smooth", "jump", "all"])
+        self.assertEqual(lines[0].split()[1:4] + lines[0].split()[5:], ["2", "2", "3.00", "a"])
+
+    def test_answers_from_other_programs(self):
+        """Quotes, Windows line ends, blank lines, blanks, any order, as spreadsheets and scripts write them."""
+        plain = self.score(csv(self.answers))
+        lines = csv(dict(reversed(self.answers.items()))).splitlines()
+        self.assertEqual(self.score("\r\n".join(lines)), plain)
+        self.assertEqual(self.score("\n\n".join(lines) + "\n\n"), plain)
+        self.assertEqual(self.score("\n".join(line.replace(",", " , ") for line in lines)), plain)
+        self.assertEqual(self.score("\n".join(",".join(f'"{field}"' for field in line.split(",")) for line in lines)), plain)
+        by_stream = self.json_of("score", self.vectors, "-", "--json", stdin="\n".join(lines).encode())
+        self.assertEqual({level["level"]: level for level in by_stream}, plain)
+
+    def test_missing_answers_count_as_no_digits(self):
+        del self.answers["b"]
+        done = self.run_program("score", self.vectors, self.write("answers.csv", csv(self.answers)), "--json")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn(b"answers.csv: no answer for 1 of 3 vectors", done.stderr)
+        smooth = json.loads(done.stdout)[0]
+        self.assertEqual((smooth["cases"], smooth["answered"], smooth["digits_min"], smooth["worst"]), (2, 1, 0, "b"))
+
+    def test_help_says_how_digits_are_counted(self):
+        text = self.output_of("score", "--help")
+        for words in ("-log10", "error_bound", "raytruth score vectors.json answers.csv", "without an"):
+            self.assertIn(words, text)
+
+    def test_bad_answers(self):
+        good = csv(self.answers)
+        for text, *words in [
+            ("", "found no lines", "id,r,g,b,opacity"),
+            ("\n\n", "found no lines"),
+            ("a,1,1,1,1\n", "line 1: found 'a,1,1,1,1'; the header id,r,g,b,opacity is allowed"),
+            ("id,r,g,b,a\n", "line 1: found 'id,r,g,b,a'"),
+            ("id,r,g,b\n", "line 1: found 4 fields"),
+            ("\ufeff" + good, "line 1: ", "header"),
+            (good + "d,0,0,0,0\n", "the id 'd'", "ids of vectors.json"),
+            (good.replace("a,", "smooth_ray,"), "the id 'smooth_ray'"),
+            (good + "a,0,0,0,0\n", "line 5: found a second answer for 'a'"),
+            (good + ",0,0,0,0\n", "line 5: found no id"),
+            (good + "d,0,0,0\n", "line 5: found 4 fields; id,r,g,b,opacity is allowed"),
+            (good + "d,0,0,0,0,0\n", "line 5: found 6 fields"),
+            (good + "d,0,nan,0,0\n", "line 5: found g 'nan'; a finite number is allowed"),
+            (good + "d,0,0,0,inf\n", "line 5: found opacity 'inf'"),
+            (good + "d,0,0,-Infinity,0\n", "line 5: found b '-Infinity'"),
+            (good + "d,,0,0,0\n", "line 5: found r ''"),
+            (good + "d,0x1p3,0,0,0\n", "line 5: found r '0x1p3'"),
+            (good + "d,1e999,0,0,0\n", "line 5: found r '1e999'"),
+            (good + "d,1 2,0,0,0\n", "line 5: found r '1 2'"),
+            (good + "d,0.5f,0,0,0\n", "line 5: found r '0.5f'"),
+            (good + "d,0,0,0,word\n", "line 5: found opacity 'word'"),
+            (good + "x" * 100000 + ",0,0,0,0\n", "..."),
+            (good + "\x00\x1b,0,0,0,0\n", "line 5: "),
+            (good + '"d,0,0,0,0\n', "line 5: found "),
+        ]:
+            with self.subTest(words=words):
+                done = self.run_program("score", self.vectors, self.write("answers.csv", text))
+                self.assert_refused(done, "answers.csv: ", *words)
+                self.assertLess(len(done.stderr), 400)
+
+    def test_bad_bytes_and_files(self):
+        self.assert_refused(self.run_program("score", self.vectors, self.write("answers.csv", bytes(range(256)))), "answers.csv: line 1")
+        self.assert_refused(self.run_program("score", self.vectors, "absent.csv"), "absent.csv: ", "a readable CSV file")
+        self.assert_refused(self.run_program("score", self.vectors, "."), "a folder")
+        self.assert_refused(self.run_program("score", "absent.json", "answers.csv"), "absent.json: ", "a readable JSON file")
+        self.assert_refused(self.run_program("score", self.vectors), "answers")
+
+    def test_bad_vectors(self):
+        answers = self.write("answers.csv", csv(self.answers))
+        for pointer, wrong, words in [
+            ("/raytruth", "vectors/2", "vectors/1"),
+            ("/raytruth", ..., "found nothing"),
+            ("/vectors", [], "at least 1"),
+            ("/colour", 1, "unknown key"),
+            ("/vectors/1/colour", 1, "unknown key"),
+            ("/vectors/1/id", "a", "each id once"),
+            ("/vectors/1/id", "", "text"),
+            ("/vectors/1/level", ..., "found nothing"),
+            ("/vectors/0/reference", ..., "found nothing"),
+            ("/vectors/0/reference/color", [1, 2], "3 numbers"),
+            ("/vectors/0/reference/opacity", None, "a number"),
+            ("/vectors/0/reference/error_bound", -1, "found -1"),
+        ]:
+            with self.subTest(pointer=pointer, wrong=wrong):
+                vectors = self.write("bad.json", changed(self.document, pointer, wrong))
+                self.assert_refused(self.run_program("score", vectors, answers), f"bad.json: {pointer}: ", words)
+
+
+class AnswersOfOurOwn(ProgramTest):
+    """The study `conformance`, and the same by way of `eval` and `score`."""
+
+    def test_study_is_what_score_says_of_eval(self):
+        vectors = json.loads(COMMITTED.read_text())["vectors"]
+        experiment = json.loads((SOURCE / "experiments/conformance.json").read_text())
+        (measure,) = experiment["measures"]
+        cases = []
+        for vector in vectors:
+            if "slab" in vector:
+                front, back, length = (vector["slab"][key] for key in ("front", "back", "length"))
+                signal = {"kind": "piecewise_polynomial", "breaks": [0, length], "coefficients": [[front, (back - front) / length]]}
+                step = length
+            else:
+                signal = vector["signal"]
+                step = signal["breaks"][-1] / measure["intervals"]
+            cases.append(
+                {
+                    "signal": signal,
+                    **{key: vector[key] for key in ("transfer_function", "emission")},
+                    "sampling": {"kind": "constant", "step": step},
+                    "schemes": experiment["schemes"],
+                }
+            )
+        answers = self.json_of("eval", "-", stdin=cases)
+        rows = self.json_of("run", SOURCE / "experiments/conformance.json")["rows"]
+        for name in experiment["schemes"]:
+            schemes = {vector["id"]: answer["schemes"][name] for vector, answer in zip(vectors, answers)}
+            text = csv({id: [*scheme["color"], scheme["opacity"]] for id, scheme in schemes.items()})
+            scores = self.json_of("score", COMMITTED, self.write("answers.csv", text), "--json")
+            keys = ("level", "cases", "answered", "worst")
+            study = [row for row in rows if row["scheme"] == name]
+            self.assertEqual([[score[key] for key in keys] for score in scores], [[row[key] for key in keys] for row in study])
+            for score, row in zip(scores, study):
+                self.assertAlmostEqual(score["digits_min"], row["digits_min"], places=3)
+                self.assertAlmostEqual(score["digits_median"], row["digits_median"], places=3)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,252 @@
+#include "kernels/kernels.hpp"
+
+#include "core/bernstein.hpp"
+#include "core/real.hpp"
+#include "kernels/exponential.hpp"
+#include "kernels/gauss_legendre.hpp"
+#include "reference/piece_integral.hpp"
+
+#include <gtest/gtest.h>
+#include <boost/math/quadrature/gauss.hpp>
+
+#include <cmath>
+#include <random>
+
+namespace raytruth {
+namespace {
+
+double uniform(std::uint64_t stream, std::uint64_t index) {
+  std::mt19937_64 generator(1000003 * stream + index);
+  return static_cast<double>(generator() >> 11) * 0x1p-53;
+}
+
+TEST(Exponential, StaysWithinItsBoundEverywhere) {
+  double worst = 0;
+  for (std::uint64_t i = 0; i < 20000; ++i) {
+    const double y = -uniform(0, i) * (i % 2 == 0 ? 1 : 700);
+    const Real50 exact = exp(Real50(y));
+    worst = std::max(worst, std::abs(to_double(Real50((Real50(exponential(y)) - exact) / exact))));
+  }
+  EXPECT_LE(worst, exponential_error);
+  EXPECT_GT(worst, exponential_error / 4);  // the bound is no fantasy
+  EXPECT_EQ(exponential(0.0), 1);
+  EXPECT_EQ(exponential(-1e300), exponential(-700.0));
+}
+
+TEST(Exponential, ItsLogarithmIsNeverBelow) {
+  for (std::uint64_t i = 0; i < 20000; ++i) {
+    const double x = std::ldexp(1 + uniform(1, i), static_cast<int>(1200 * uniform(2, i)) - 600);
+    EXPECT_GE(log2_above(x), std::log2(x));
+    EXPECT_LE(log2_above(x), std::log2(x) + 0.09);
+  }
+}
+
+TEST(NodeTable, IntegratesPolynomialsOfTwiceItsCount) {
+  for (const std::size_t count : {1U, 2U, 5U, 8U, 13U, 32U}) {
+    const auto& table = node_table<3>(count);
+    for (std::size_t j = 0; j <= 3; ++j) {
+      double sum = 0;
+      for (std::size_t i = 0; i < table.stride; ++i) sum += table.weights[i] * table.signal_basis[j][i];
+      EXPECT_NEAR(sum, count >= 2 ? 1.0 / 4 : sum, 1e-15);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      double sum = 0;
+      for (std::size_t j = 0; j <= 4; ++j) sum += table.depth_basis[j][i];
+      EXPECT_NEAR(sum, 1, 1e-15);
+    }
+  }
+}
+
+/// A piece whose coefficients lie in [low, high], of this optical depth.
+template <int Degree>
+LinearPiece<Degree> random_piece(std::uint64_t index, double depth, double low = 0, double high = 1) {
+  LinearPiece<Degree> piece{.length = 1};
+  piece.extinction_at_0 = uniform(3, index);
+  piece.extinction_at_1 = uniform(4, index);
+  double mean = 0;
+  for (std::size_t j = 0; j <= Degree; ++j) {
+    piece.x[j] = low + (high - low) * uniform(5 + j, index);
+    mean += (piece.extinction_at_0 * (1 - piece.x[j]) + piece.extinction_at_1 * piece.x[j]) / (Degree + 1);
+  }
+  piece.extinction_at_0 *= depth / mean;
+  piece.extinction_at_1 *= depth / mean;
+  return piece;
+}
+
+/// The same integrals in 50 digits, by Gauss's rule on many parts.
+template <int Degree>
+std::array<Real50, 3> exact_integrals(const LinearPiece<Degree>& piece, Emission emission) {
+  Bernstein<Degree, Real50> x;
+  Bernstein<Degree, Real50> extinction;
+  for (std::size_t j = 0; j <= Degree; ++j) {
+    x.coefficients[j] = piece.x[j];
+    extinction.coefficients[j] =
+        Real50(piece.extinction_at_0) * (1 - Real50(piece.x[j])) + Real50(piece.extinction_at_1) * Real50(piece.x[j]);
+  }
+  const auto depth = extinction.antiderivative();
+  const auto weight = [&](bool of_1, const Real50& u) {
+    const Real50 scalar = x.value(u);
+    const Real50 density = emission == Emission::associated ? extinction.value(u) : Real50(1);
+    return Real50((of_1 ? scalar : Real50(1 - scalar)) * density * exp(-Real50(piece.length) * depth.value(u)));
+  };
+  std::array<Real50, 3> result{0, 0, Real50(piece.length) * depth.coefficients.back()};
+  constexpr int parts = 8;
+  for (int part = 0; part < parts; ++part)
+    for (const bool of_1 : {false, true})
+      result[of_1 ? 1 : 0] += Real50(piece.length) * boost::math::quadrature::gauss<Real50, 25>::integrate(
+                                                         [&](const Real50& u) { return weight(of_1, u); },
+                                                         Real50(part) / parts, Real50(part + 1) / parts);
+  return result;
+}
+
+template <int Degree>
+void expect_enclosed(const PieceIntegral<>& integral, const std::array<Real50, 3>& exact, double most_radius) {
+  const auto distance = [](double a, const Real50& b) { return std::abs(to_double(Real50(Real50(a) - b))); };
+  EXPECT_LE(distance(integral.weight_0, exact[0]), integral.weight_error);
+  EXPECT_LE(distance(integral.weight_1, exact[1]), integral.weight_error);
+  EXPECT_LE(distance(integral.depth, exact[2]), integral.depth_error);
+  EXPECT_LE(integral.weight_error, most_radius);
+}
+
+template <int Degree>
+void check_pieces(Emission emission, double depth, double most_radius) {
+  for (std::uint64_t i = 0; i < 8; ++i) {
+    const auto piece = random_piece<Degree>(i, depth);
+    const auto exact = exact_integrals(piece, emission);
+    expect_enclosed<Degree>(integrate(piece, emission), exact, most_radius);
+    expect_enclosed<Degree>(integrate_scalar(piece, emission), exact, most_radius);
+  }
+}
+
+TEST(PieceIntegral, EnclosesFiftyDigitsAtEveryDepth) {
+  for (const Emission emission : {Emission::associated, Emission::plain})
+    for (const double depth : {1e-9, 0.01, 0.3, 3.0, 30.0}) {
+      check_pieces<3>(emission, depth, emission == Emission::plain ? 1e-14 : 1e-14 * std::min(1.0, 10 * depth));
+      check_pieces<9>(emission, depth, 3e-14);
+    }
+}
+
+TEST(PieceIntegral, CoefficientsOutsideTheIntervalKeepTheBound) {
+  for (const Emission emission : {Emission::associated, Emission::plain})
+    for (std::uint64_t i = 0; i < 8; ++i) {
+      const auto piece = random_piece<3>(i, 1, -0.4, 1.4);
+      expect_enclosed<3>(integrate(piece, emission), exact_integrals(piece, emission), 1e-13);
+    }
+}
+
+TEST(PieceIntegral, AnErrorOfTheScalarIsCovered) {
+  for (const Emission emission : {Emission::associated, Emission::plain})
+    for (std::uint64_t i = 0; i < 16; ++i) {
+      auto piece = random_piece<3>(i, 2, 0.1, 0.9);
+      auto moved = piece;
+      for (double& x : moved.x) x += i % 2 == 0 ? 1e-4 : -1e-4;
+      piece.x_error = 1e-4;
+      expect_enclosed<3>(integrate(piece, emission), exact_integrals(moved, emission), 1e-2);
+    }
+}
+
+TEST(PieceIntegral, DeepPiecesAreHalvedAndWhatIsHiddenIsBounded) {
+  for (const double depth : {100.0, 1e3, 1e5, 1e9}) {
+    LinearPiece<3> piece{.x = {0, 0, 0, 0}, .extinction_at_0 = depth, .length = 1};
+    const auto integral = integrate(piece, Emission::associated);
+    EXPECT_NEAR(integral.weight_0, 1, integral.weight_error);
+    EXPECT_LE(integral.weight_error, 1e-13);
+    EXPECT_NEAR(integral.depth, depth, integral.depth_error);
+    const auto plain = integrate(piece, Emission::plain);
+    EXPECT_NEAR(plain.weight_0, 1 / depth, plain.weight_error);
+    EXPECT_LE(plain.weight_error, 1e-13 / depth);
+  }
+}
+
+TEST(Kernels, EightSideBySideEncloseToo) {
+  LinearPiece<3, Eight> pieces;
+  std::array<LinearPiece<3>, lane_count> singly;
+  for (std::size_t lane = 0; lane < lane_count; ++lane) {
+    singly[lane] = random_piece<3>(lane, std::pow(10, static_cast<double>(lane) - 3));  // the last ones are halved
+    for (std::size_t j = 0; j <= 3; ++j) pieces.x[j][lane] = singly[lane].x[j];
+    pieces.extinction_at_0[lane] = singly[lane].extinction_at_0;
+    pieces.extinction_at_1[lane] = singly[lane].extinction_at_1;
+    pieces.length[lane] = 1;
+  }
+  const auto together = integrate(pieces, Emission::associated);
+  for (std::size_t lane = 0; lane < lane_count; ++lane) {
+    const auto alone = integrate(singly[lane], Emission::associated);
+    EXPECT_NEAR(together.weight_0[lane], alone.weight_0, together.weight_error[lane] + alone.weight_error);
+    EXPECT_NEAR(together.weight_1[lane], alone.weight_1, together.weight_error[lane] + alone.weight_error);
+  }
+}
+
+template <int Degree>
+void expect_same_bits() {
+  LinearPiece<Degree, Eight> pieces;
+  Stretches<Degree> stretches;
+  std::array<double, Degree + 1> rising;
+  for (std::size_t j = 0; j <= Degree; ++j) {
+    rising[j] = static_cast<double>(j) + uniform(40, j);
+    for (std::size_t lane = 0; lane < lane_count; ++lane) {
+      pieces.x[j][lane] = uniform(20 + j, lane);
+      stretches.signal[j][lane] = uniform(30 + j, lane);
+    }
+  }
+  for (std::size_t lane = 0; lane < lane_count; ++lane) {
+    pieces.extinction_at_0[lane] = 3 * uniform(50, lane);
+    pieces.extinction_at_1[lane] = 5 * uniform(51, lane);
+    pieces.length[lane] = stretches.scale[lane] = 1;
+    stretches.begin[lane] = 0.4 * uniform(52, lane);
+    stretches.end[lane] = 0.5 + 0.4 * uniform(53, lane);
+  }
+  const std::array targets{rising.front() + 0.1, rising.front() + 0.5, rising.back() - 0.1};
+  const auto& best = kernels<Degree>();
+  std::array<double, 3> abscissae{};
+  best.crossings(rising, 0, 1, targets.data(), targets.size(), true, abscissae.data());
+  for (std::size_t i = 0; i < targets.size(); ++i)
+    EXPECT_NEAR((Bernstein<Degree>{rising}.value(abscissae[i])), targets[i], 1e-13);
+  for (const Kernels<Degree>* version : kernel_versions<Degree>()) {
+    const auto expected = best.integrate_eight(pieces, true);
+    const auto integral = version->integrate_eight(pieces, true);
+    EXPECT_EQ(integral.weight_0, expected.weight_0);
+    EXPECT_EQ(integral.weight_1, expected.weight_1);
+    EXPECT_EQ(integral.weight_error, expected.weight_error);
+    EXPECT_EQ(integral.depth, expected.depth);
+    const auto normalised = version->normalise(stretches);
+    EXPECT_EQ(normalised.x, best.normalise(stretches).x);
+    EXPECT_EQ(normalised.x_error, best.normalise(stretches).x_error);
+    EXPECT_EQ(version->transmittances(pieces.extinction_at_0), best.transmittances(pieces.extinction_at_0));
+    std::array<double, 3> again{};
+    version->crossings(rising, 0, 1, targets.data(), targets.size(), true, again.data());
+    EXPECT_EQ(again, abscissae);
+  }
+}
+
+TEST(Kernels, EveryLevelOfTheProcessorGivesTheSameBits) {
+  expect_same_bits<3>();
+  expect_same_bits<9>();
+}
+
+/// Coefficients of x on [begin, end] in 50 digits.
+TEST(Kernels, NormalisedStretchesAreWithinTheirError) {
+  constexpr int degree = 3;
+  Stretches<degree> stretches;
+  for (std::size_t lane = 0; lane < lane_count; ++lane) {
+    for (std::size_t j = 0; j <= degree; ++j) stretches.signal[j][lane] = uniform(60 + j, lane);
+    stretches.begin[lane] = 0.9 * uniform(70, lane);
+    stretches.end[lane] = stretches.begin[lane] + std::pow(0.1, static_cast<double>(lane)) / 16;
+    stretches.origin[lane] = uniform(71, lane);
+    stretches.scale[lane] = std::pow(4.0, static_cast<double>(lane));
+  }
+  const auto normalised = kernels<degree>().normalise(stretches);
+  for (std::size_t lane = 0; lane < lane_count; ++lane) {
+    Bernstein<degree, Real50> signal;
+    for (std::size_t j = 0; j <= degree; ++j)
+      signal.coefficients[j] =
+          Real50(stretches.scale[lane]) * (Real50(stretches.signal[j][lane]) - Real50(stretches.origin[lane]));
+    const auto exact = signal.restricted(Real50(stretches.begin[lane]), Real50(stretches.end[lane]));
+    for (std::size_t j = 0; j <= degree; ++j)
+      EXPECT_LE(abs(Real50(Real50(normalised.x[j][lane]) - exact.coefficients[j])), normalised.x_error[lane]);
+    // The error shrinks with the stretch, down to the rounding of x itself.
+    EXPECT_LE(normalised.x_error[lane], 1e-14 * (1 + std::abs(normalised.x[0][lane])));
+  }
+}
+
+}  // namespace
+}  // namespace raytruth
