@@ -173,8 +173,8 @@ auto nodes_for(const LinearPiece<Degree, Piece>& piece, const Prepared<Degree, P
   const Vector x_reach = (larger(magnitude(chebyshev[0]), magnitude(Piece(1 - chebyshev[0]))) + uncertainty) + x_part;
   Vector log2_largest = log2_above(x_reach) + (log2_e * exponent - log2_e * mean) + ellipse.log2_factor;
   if (associated)
-    log2_largest += log2_above(Vector(larger(extinction_0, Piece{}) + prepared.slope * uncertainty +
-                                      prepared.slope * x_part + Vector(smallest)));
+    log2_largest += log2_above(
+        Vector(magnitude(extinction_0) + prepared.slope * uncertainty + prepared.slope * x_part + Vector(smallest)));
   return Vector((log2_largest - log2_goal) * ellipse.nodes_per_bit);
 }
 

@@ -151,6 +151,8 @@ BENCHMARK_TEMPLATE(exact_xi_against_sums, Order2)
 /// The measure behind the xi studies on two threads, against one.
 void two_threads_against_one(benchmark::State& state) {
   const JsonReader nothing = JsonReader::from_text(R"({"kind": "signal_error"})", "benchmark");
+  const std::string document =
+      R"({"schemes": ["order0_left", "order0_right", "order0_mid", "order1", "order2"], "samplings": [{"kind": "cells"}]})";
   const Experiment experiment{.name = "benchmark",
                               .seed = 1,
                               .fields = {},
@@ -161,7 +163,7 @@ void two_threads_against_one(benchmark::State& state) {
                               .measures = {},
                               .claims = {},
                               .checks = {},
-                              .json = nothing};
+                              .json = JsonReader::from_text(document, "benchmark")};
   const Field white{.name = "white", .grid = field(0), .data_range = {0, 1}};
   const auto measure = [&] { return signal_error_rows(experiment, nothing, white).size(); };
   tbb::task_arena one(1);
