@@ -26,16 +26,19 @@ Vector exponential(const Vector& y) {
   constexpr double ln2_low = 0x1.a39ef35793c76p-33;
   constexpr double round_to_integer = 0x1.8p52;  // adding it leaves the integer in the low bits
   const Vector clamped = larger<Vector>(-700, y);
-  const Vector shifted = clamped * log2_e + round_to_integer;
+  const Vector shifted = multiply_add(clamped, Vector(log2_e), Vector(round_to_integer));
   const Vector n = shifted - round_to_integer;
-  const Vector r = (clamped - n * ln2_high) - n * ln2_low;
+  const Vector r = multiply_add(n, Vector(-ln2_low), multiply_add(n, Vector(-ln2_high), clamped));
   const Vector r2 = r * r;
   const Vector r4 = r2 * r2;
-  const Vector g2 = (1.0 / 2 + r * (1.0 / 6)) + r2 * (1.0 / 24 + r * (1.0 / 120));
-  const Vector g6 = (1.0 / 720 + r * (1.0 / 5040)) + r2 * (1.0 / 40320 + r * (1.0 / 362880));
-  const Vector g10 = (1.0 / 3628800 + r * (1.0 / 39916800)) + r2 * (1.0 / 479001600 + r * (1.0 / 6227020800));
-  const Vector g = g2 + r4 * (g6 + r4 * g10);
-  const Vector e_to_r = 1.0 + (r + r2 * g);
+  const auto four_terms = [&](double g0, double g1, double g2, double g3) {
+    return multiply_add(r2, multiply_add(r, Vector(g3), Vector(g2)), multiply_add(r, Vector(g1), Vector(g0)));
+  };
+  const Vector g_high = four_terms(1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800);
+  const Vector g_middle = four_terms(1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880);
+  const Vector g =
+      multiply_add(r4, multiply_add(r4, g_high, g_middle), four_terms(1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120));
+  const Vector e_to_r = 1.0 + multiply_add(r2, g, r);
   return from_bits(to_bits(e_to_r) + (to_bits(shifted) << 52));
 }
 

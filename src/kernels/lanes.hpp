@@ -8,6 +8,10 @@
 #include <cstdint>
 #include <cstring>
 
+#ifdef __FMA__
+#include <immintrin.h>
+#endif
+
 namespace raytruth::inline RAYTRUTH_LEVEL {
 
 /// The bits of Lanes, or for every lane whether something holds: all bits or none.
@@ -64,6 +68,32 @@ struct alignas(8 * lane_count) Lanes {
 };
 
 // What follows is written for Lanes and for double alike.
+
+/// a b + c: with one rounding where the processor has it, else with two. No bound that is proven here asks which.
+inline double multiply_add(double a, double b, double c) {
+#ifdef __FMA__
+  return __builtin_fma(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+inline Lanes multiply_add(const Lanes& a, const Lanes& b, const Lanes& c) {
+#if defined(__AVX512F__)
+  Lanes result;
+  result.vector = Lanes::Vector(_mm512_fmadd_pd(__m512d(a.vector), __m512d(b.vector), __m512d(c.vector)));
+  return result;
+#elif defined(__FMA__)
+  struct Halves {
+    __m256d low, high;
+  };
+  const auto x = std::bit_cast<Halves>(a);
+  const auto y = std::bit_cast<Halves>(b);
+  const auto z = std::bit_cast<Halves>(c);
+  return std::bit_cast<Lanes>(Halves{_mm256_fmadd_pd(x.low, y.low, z.low), _mm256_fmadd_pd(x.high, y.high, z.high)});
+#else
+  return a * b + c;
+#endif
+}
 
 inline Lanes select(const LaneBits& which, const Lanes& a, const Lanes& b) {
   Lanes result;

@@ -5,7 +5,7 @@
 
 // The files of this folder that hold inner loops are compiled once for every level of x86-64, each in a namespace of
 // its own, so that no function of a higher level is linked where a lower one is meant; kernels.hpp takes the best
-// version that the processor has. With -ffp-contract=off all of them give the same bits.
+// version that the processor has. Levels with fused products round less, so their last bits differ, within the radii.
 #ifndef RAYTRUTH_LEVEL
 #define RAYTRUTH_LEVEL baseline
 #endif

@@ -162,11 +162,11 @@ auto nodes_for(const LinearPiece<Degree, Piece>& piece, const Prepared<Degree, P
   Piece mean{};  // kappa_0: Q vanishes at -1
   const Piece depth_uncertainty = half * (prepared.slope + piece.extinction_at_0) * uncertainty;
   for (std::size_t k = 1; k <= Degree + 1; ++k) {
-    if (k <= Degree) x_part += (magnitude(chebyshev[k]) + uncertainty) * a[k];
+    if (k <= Degree) x_part = multiply_add(Vector(magnitude(chebyshev[k]) + uncertainty), Vector(a[k]), x_part);
     const Piece before = k == 1 ? 2 * extinction_0 : k - 1 <= Degree ? slope * chebyshev[k - 1] : Piece{};
     const Piece after = k + 1 <= Degree ? slope * chebyshev[k + 1] : Piece{};
     const Piece kappa = half * (before - after) * (0.5 / static_cast<double>(k));
-    exponent += (magnitude(kappa) + depth_uncertainty) * a[k];
+    exponent = multiply_add(Vector(magnitude(kappa) + depth_uncertainty), Vector(a[k]), exponent);
     mean += k % 2 == 1 ? kappa : Piece(-kappa);
     mean -= depth_uncertainty;
   }
@@ -201,11 +201,11 @@ struct Sums {
            const Vector& depth_here) {
     const Vector here = weight * exponential(Vector(-depth_here));
     const Vector density = associated ? Vector(here * extinction) : here;
-    weight_0 += density * (1 - x);
-    weight_1 += density * x;
+    weight_0 = multiply_add(density, Vector(1 - x), weight_0);
+    weight_1 = multiply_add(density, x, weight_1);
     transmitted += here;
-    depth += density * depth_here;
-    position += density * node;
+    depth = multiply_add(density, depth_here, depth);
+    position = multiply_add(density, Vector(node), position);
   }
 };
 
@@ -274,9 +274,9 @@ template <int Degree, class Vector>
     Vector depth{};
     Vector extinction{};
     for (std::size_t j = 0; j <= Degree; ++j) {
-      x += table.signal_basis[j][i] * piece.x[j];
-      extinction += table.signal_basis[j][i] * prepared.extinction[j];
-      depth += table.depth_basis[j + 1][i] * prepared.depth[j + 1];
+      x = multiply_add(Vector(table.signal_basis[j][i]), piece.x[j], x);
+      extinction = multiply_add(Vector(table.signal_basis[j][i]), prepared.extinction[j], extinction);
+      depth = multiply_add(Vector(table.depth_basis[j + 1][i]), prepared.depth[j + 1], depth);
     }
     sums.add(associated, table.nodes[i], table.weights[i], x, extinction, depth);
   }
@@ -305,9 +305,9 @@ template <int Degree>
     Lanes extinction{};
     for (std::size_t j = 0; j <= Degree; ++j) {
       const Lanes basis = Lanes::load(&table.signal_basis[j][i]);
-      x += basis * piece.x[j];
-      extinction += basis * prepared.extinction[j];
-      depth += Lanes::load(&table.depth_basis[j + 1][i]) * prepared.depth[j + 1];
+      x = multiply_add(basis, Lanes(piece.x[j]), x);
+      extinction = multiply_add(basis, Lanes(prepared.extinction[j]), extinction);
+      depth = multiply_add(Lanes::load(&table.depth_basis[j + 1][i]), Lanes(prepared.depth[j + 1]), depth);
     }
     sums.add(associated, Lanes::load(&table.nodes[i]), Lanes::load(&table.weights[i]), x, extinction, depth);
   }

@@ -16,7 +16,7 @@ template <std::size_t Count>
 void reduce(std::array<Lanes, Count>& points, std::size_t from, std::size_t to, const Lanes& u) {
   const Lanes v = 1 - u;
   for (std::size_t last = from; last > to; --last)
-    for (std::size_t i = 0; i < last; ++i) points[i] = v * points[i] + u * points[i + 1];
+    for (std::size_t i = 0; i < last; ++i) points[i] = multiply_add(v, points[i], u * points[i + 1]);
 }
 
 /// An unevaluated sum: high, and what its rounding left.
@@ -32,7 +32,7 @@ inline LanePair two_sum(const Lanes& a, const Lanes& b) {
   return {sum, (a - (sum - b_part)) + (b - b_part)};
 }
 
-/// a * b exactly (Dekker): without fused products, so that all levels give the same bits.
+/// a * b exactly (Dekker): not every level has fused products.
 inline LanePair two_product(const Lanes& a, const Lanes& b) {
   constexpr double splitter = 0x1p27 + 1;
   const auto split = [](const Lanes& x) {
@@ -158,8 +158,8 @@ template <int Degree>
     Vector value = powers[Degree];
     Vector slope = 0;
     for (std::size_t k = Degree; k-- > 0;) {
-      slope = slope * u + value;
-      value = value * u + powers[k];
+      slope = multiply_add(slope, u, value);
+      value = multiply_add(value, u, Vector(powers[k]));
     }
     return std::array{value, slope};
   };
