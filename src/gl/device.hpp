@@ -1,5 +1,7 @@
 #pragma once
 
+#include "textures/texel_format.hpp"
+
 #include <array>
 #include <cstddef>
 #include <map>
@@ -27,9 +29,6 @@ struct GlIdentity {
   std::string renderer;
   std::string version;
 };
-
-/// How texels are stored.
-enum class TexelFormat { r8, r16, r16f, r32f, rgba8, rgba16, rgba16f, rgba32f };
 
 /// A texture of one, two or three dimensions, clamped to its edge.
 struct GlTexture {

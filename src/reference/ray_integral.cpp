@@ -305,8 +305,9 @@ void RayIntegral::integrate_pieces(Buffers<Degree>& buffers, Sum& sum) const {
       color_error += buffers.color_errors[first + lane];
       const double transmittance = transmittances[lane];
       const double drift = drift_of(depths[lane], transmittance, depth_errors[lane]);
-      sum.color_error += slack * (std::min(1.0, transmittance + drift) * color_error +
-                                  color.maxCoeff() * (drift + transmittance * (exponential_error + 6 * unit_roundoff)));
+      sum.color_error +=
+          slack * (std::min(1.0, transmittance + drift) * color_error +
+                   color.abs().maxCoeff() * (drift + transmittance * (exponential_error + 6 * unit_roundoff)));
       sum.add_color(transmittance * color);
     }
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/slab.hpp"
+#include "core/vector3.hpp"
 #include "reference/certified.hpp"
 
 #include <cstdint>

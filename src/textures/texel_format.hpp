@@ -1,12 +1,13 @@
 #pragma once
 
-#include "gl/device.hpp"
-
 #include <array>
 #include <cstddef>
 #include <string_view>
 
 namespace raytruth {
+
+/// How texels are stored: their channels and the type of each.
+enum class TexelFormat { r8, r16, r16f, r32f, rgba8, rgba16, rgba16f, rgba32f };
 
 /// How a texture stores a component of a texel.
 enum class TexelType {

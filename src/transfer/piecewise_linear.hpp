@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/error.hpp"
-#include "core/slab.hpp"
+#include "core/vector3.hpp"
 
 #include <cstddef>
 #include <string>
