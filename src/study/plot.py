@@ -16,6 +16,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator
 
 plt.rcParams.update(
     {
@@ -100,6 +101,28 @@ def show_legend(axes, handles):
     axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.0), fontsize=7)
 
 
+def share_legend(figure, all_axes, width):
+    """One legend for the figure where all panels have the same: its handles and number of columns, else none."""
+    legends = [axes.get_legend() for axes in all_axes]
+    keys = [[(line.get_label(), line.get_color(), line.get_marker()) for line in legend.get_lines()] for legend in legends]
+    if len(legends) == 1 or any(key != keys[0] for key in keys):
+        return None, 0
+    handles = legends[0].get_lines()
+    for legend in legends:
+        legend.remove()
+    widest = max(len(line.get_label()) for line in handles)
+    return handles, max(1, min(len(handles), int(width / (0.055 * widest + 0.55))))
+
+
+def label_log_axis(axis):
+    """Numbers at 2 and 5 too where powers of ten alone would be one or none."""
+    low, high = axis.get_view_interval()
+    if high < 30 * low:
+        axis.set_minor_locator(LogLocator(subs=(2, 5)))
+        axis.set_minor_formatter("{x:g}")
+        axis.set_major_formatter("{x:g}")
+
+
 def draw_groups(axes, result, panel, columns, draw_bars, key_width):
     """One row of the result beside another: groups below one another, the series of each side by side.
 
@@ -150,6 +173,8 @@ def draw_groups(axes, result, panel, columns, draw_bars, key_width):
     axes.set_ylim(len(groups) - 0.5, -0.5)
     for border in range(1, len(groups)):
         axes.axhline(border - 0.5, color="0.9", linewidth=0.6, zorder=0)
+    if panel.get("log"):
+        label_log_axis(axes.xaxis)
     axes.grid(axis="x", color="0.93", linewidth=0.6)
     axes.tick_params(axis="y", length=0)
     axes.set_xlabel(panel["label"])
@@ -208,6 +233,9 @@ def draw_lines(axes, result, panel):
         axes.set_yscale("log")
     axes.set_xlim(panel.get("x_range"))
     axes.set_ylim(panel.get("y_range"))
+    for log, axis in (("log_x", axes.xaxis), ("log_y", axes.yaxis)):
+        if panel.get(log):
+            label_log_axis(axis)
     axes.grid(color="0.93", linewidth=0.6)
     axes.set_xlabel(panel["label_x"])
     axes.set_ylabel(panel["label_y"])
@@ -244,14 +272,25 @@ def draw(result):
         elif groups is not None:
             axes.tick_params(labelleft=groups != first_groups)
     width = max(PANEL_WIDTH * columns, LEAST_WIDTH)
-    figure.set_size_inches(width, sum(heights) + 1 * lines + 0.6)
-    all_axes[0][0].get_gridspec().set_height_ratios(heights)
-    figure.suptitle(textwrap.fill(plot["title"], int(14 * width)), fontsize=9)
+    title = textwrap.fill(plot["title"], int(14 * width))
     notes = [plot["note"]] if "note" in plot else []
     notes += ["; ".join(refused_rows(result))] if refused_rows(result) else []
-    if notes:
-        figure.supxlabel("\n".join(textwrap.fill(note, int(20 * width)) for note in notes), fontsize=6.5, color="0.3")
-    figure.tight_layout()
+    note = "\n".join(textwrap.fill(text, int(20 * width)) for text in notes)
+    handles, entries = share_legend(figure, list(all_axes.flat)[: len(panels)], width)
+
+    # In inches: the title, below it the legend, at the bottom the note.
+    top = 0.17 * len(title.splitlines()) + 0.16
+    legend = 0.16 * -(-len(handles) // entries) + 0.12 if handles else 0
+    bottom = 0.12 * len(note.splitlines()) + 0.1
+    height = sum(heights) + (0.6 if handles else 1) * lines + top + legend + bottom
+    figure.set_size_inches(width, height)
+    all_axes[0][0].get_gridspec().set_height_ratios(heights)
+    figure.suptitle(title, fontsize=9, y=1 - 0.1 / height, in_layout=False)
+    if handles:
+        place = {"loc": "upper center", "bbox_to_anchor": (0.5, 1 - top / height), "borderaxespad": 0}
+        figure.legend(handles=handles, ncol=entries, fontsize=7, **place)
+    figure.supxlabel(note, fontsize=6.5, color="0.3", y=0.06 / height, in_layout=False)
+    figure.tight_layout(rect=(0, bottom / height, 1, 1 - (top + legend) / height))
     return figure
 
 
