@@ -16,16 +16,25 @@ def table(head, rows):
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def published(results):
-    rows = []
-    for file in sorted(results.glob("*.json")):
-        for claim in json.loads(file.read_text(encoding="utf-8")).get("published", []):
-            measured = "-"
-            if claim["measured"] is not None:
-                measured = f"{number(claim['measured'])} ({number(claim['low'])} to {number(claim['high'])})"
-            name = claim["claim"] + (f" ({claim['part']})" if "part" in claim else "")
-            rows.append([name, number(claim["stated"]), measured, claim["verdict"], f"[{file.stem}](results/{file.name})"])
-    return table(["claim", "published", "measured (low to high)", "verdict", "experiment"], rows)
+def ledger(results):
+    """How many claims of each publication have which verdict, and those that do not hold."""
+    rows = json.loads((results / "ledger.json").read_text(encoding="utf-8"))["rows"]
+    verdicts = ["reproduced", "contradicted", "not comparable", "not measured"]
+
+    def counts(of_rows):
+        return [str(sum(row["verdict"] == verdict for row in of_rows)) for verdict in verdicts]
+
+    papers = list(dict.fromkeys(row["paper"] for row in rows))
+    lines = [[paper, *counts([row for row in rows if row["paper"] == paper])] for paper in papers]
+    contradicted = []
+    for row in rows:
+        if row["verdict"] == "contradicted":
+            name = row["claim"] + (f" ({row['part']})" if row["part"] else "")
+            measured = f"{number(row['measured'])} ({number(row['low'])} to {number(row['high'])})"
+            experiment = f"[{row['experiment']}](results/{row['experiment']}.json)"
+            contradicted.append([name, number(row["stated"]), measured, experiment])
+    head = ["contradicted", "published", "measured (low to high)", "experiment"]
+    return table(["publication", *verdicts], [*lines, ["all", *counts(rows)]]) + "\n\n" + table(head, contradicted)
 
 
 def conformance(results):
@@ -78,7 +87,7 @@ def fill(file, text, name, content):
     return filled
 
 
-TABLES = {"README.md": (published, conformance, benchmarks), "src/rules/README.md": (functions,)}
+TABLES = {"README.md": (ledger, conformance, benchmarks), "src/rules/README.md": (functions,)}
 
 
 def main():

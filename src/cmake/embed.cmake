@@ -10,7 +10,7 @@ file(WRITE ${OUTPUT} "#include \"${HEADER}\"
 
 namespace raytruth {
 
-const char* const ${NAME} = R\"${NAME}(${text})${NAME}\";
+const char* const ${NAME} = R\"embedded(${text})embedded\";
 
 }  // namespace raytruth
 ")

@@ -71,4 +71,12 @@ struct ScoreOptions {
 };
 int score_answers(const ScoreOptions& options);
 
+struct LedgerOptions {
+  std::vector<std::string> results;  ///< empty: those in results/
+  std::string file = "results/ledger.json";
+  std::string page;  ///< empty: none
+  std::string plots = "plots";
+};
+int keep_ledger(const LedgerOptions& options);
+
 }  // namespace raytruth

@@ -37,6 +37,7 @@ class CommandLine {
     add_info();
     add_vectors();
     add_score();
+    add_ledger();
   }
 
   /// Returns the exit code.
@@ -177,6 +178,18 @@ class CommandLine {
         command.get_footer()));
   }
 
+  void add_ledger() {
+    auto& command = *add_command("ledger", "Collect the verdicts of results on the publications' claims",
+                                 "raytruth ledger --page plots/ledger.html", ledger_, keep_ledger);
+    command.add_option("result", ledger_.results, "JSON files (default: those in results/)");
+    command.add_option("-o", ledger_.file, "Write the ledger, a result, to this file (default: results/ledger.json)")
+        ->type_name("FILE");
+    command.add_option("--page", ledger_.page, "Write a page for people too, with the experiments' plots")
+        ->type_name("FILE");
+    command.add_option("--plots", ledger_.plots, "Where the page's plots are, NAME.svg (default: plots)")
+        ->type_name("DIR");
+  }
+
   CLI::App program_{"Exact rays through volumes, and how far the schemes of volume rendering are from them.",
                     "raytruth"};
   RunOptions run_;
@@ -187,6 +200,7 @@ class CommandLine {
   InfoOptions info_;
   VectorsOptions vectors_;
   ScoreOptions score_;
+  LedgerOptions ledger_;
   std::function<int()> chosen_;
 };
 

@@ -1,13 +1,16 @@
 #include "study/result.hpp"
 
 #include "catalogue.hpp"
+#include "study/one_line.hpp"
 #include "study/version.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
@@ -78,7 +81,7 @@ Json styles_json(const Experiment& experiment) {
 /// A cell of the table of claims.
 std::string brief(const Json& value) {
   if (value.is_null()) return "-";
-  return value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : value.get<std::string>();
+  return value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : shortened(value.get<std::string>());
 }
 
 }  // namespace
@@ -131,25 +134,30 @@ Json describe(const Field& field) {
   return json;
 }
 
+Json to_json(const Provenance& provenance) {
+  Json json = build_identity();
+  json["profile"] = provenance.profile;
+  json["threads"] = provenance.threads;
+  json["seconds"] = std::round(provenance.seconds * 1000) / 1000;
+  json["started"] =
+      fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(provenance.started)));
+  if (provenance.resumed) json["resumed"] = true;
+  if (provenance.gl)
+    json["gl"] = {{"platform", provenance.gl->platform},
+                  {"vendor", provenance.gl->vendor},
+                  {"renderer", provenance.gl->renderer},
+                  {"version", provenance.gl->version}};
+  return json;
+}
+
 Json make_result(const Experiment& experiment, const Provenance& provenance, const Json& fields,
                  const std::vector<Row>& rows) {
   const std::vector<Column> columns = result_columns(experiment);
-  Json origin = build_identity();
-  origin["profile"] = provenance.profile;
-  origin["threads"] = provenance.threads;
-  origin["seconds"] = provenance.seconds;
-  origin["started"] = provenance.started;
-  if (provenance.resumed) origin["resumed"] = true;
-  if (provenance.gl)
-    origin["gl"] = {{"platform", provenance.gl->platform},
-                    {"vendor", provenance.gl->vendor},
-                    {"renderer", provenance.gl->renderer},
-                    {"version", provenance.gl->version}};
   Json json_rows = Json::array();
   for (const Row& row : rows) json_rows.push_back(to_json(row));
   return {{"raytruth", "result/1"},
           {"experiment", experiment.json.json()},
-          {"provenance", std::move(origin)},
+          {"provenance", to_json(provenance)},
           {"styles", styles_json(experiment)},
           {"fields", fields},
           {"columns", columns_json(columns)},
@@ -201,24 +209,29 @@ JsonReader read_result(const std::string& path) {
   return result;
 }
 
-std::string claims_table(const Json& result) {
-  std::vector<std::array<std::string, 4>> table{{"claim", "published", "measured", "verdict"}};
-  for (const Json& claim : result.at("published")) {
-    const std::string part = claim.contains("part") ? fmt::format(" ({})", brief(claim.at("part"))) : "";
-    table.push_back({brief(claim.at("claim")) + part, brief(claim.at("stated")),
+std::string claims_table(const Json& claims) {
+  const auto cell = [](const Json& claim, const char* name) {
+    return claim.contains(name) ? brief(claim.at(name)) : "-";
+  };
+  std::vector<std::array<std::string, 5>> table{{"claim", "published", "measured", "verdict", "experiment"}};
+  for (const Json& claim : claims) {
+    const std::string part = cell(claim, "part");
+    table.push_back({cell(claim, "claim") + (part == "-" ? "" : fmt::format(" ({})", part)), cell(claim, "stated"),
                      claim.at("measured").is_null() ? "-"
-                                                    : fmt::format("{} ({} .. {})", brief(claim.at("measured")),
-                                                                  brief(claim.at("low")), brief(claim.at("high"))),
-                     brief(claim.at("verdict"))});
+                                                    : fmt::format("{} ({} .. {})", cell(claim, "measured"),
+                                                                  cell(claim, "low"), cell(claim, "high")),
+                     cell(claim, "verdict"), cell(claim, "experiment")});
   }
   if (table.size() == 1) return {};
+  const bool has_experiments = claims.front().contains("experiment");
   std::array<std::size_t, 4> widths{};
   for (const auto& line : table)
-    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+    for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
   std::string text;
-  for (const auto& line : table)
-    text += fmt::format("{:<{}}  {:<{}}  {:<{}}  {}\n", line[0], widths[0], line[1], widths[1], line[2], widths[2],
-                        line[3]);
+  for (const auto& line : table) {
+    text += fmt::format("{:<{}}  {:<{}}  {:<{}}  ", line[0], widths[0], line[1], widths[1], line[2], widths[2]);
+    text += has_experiments ? fmt::format("{:<{}}  {}\n", line[3], widths[3], line[4]) : line[3] + "\n";
+  }
   return text;
 }
 

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,13 +23,16 @@ struct Provenance {
   std::string profile;
   int threads = 0;
   double seconds = 0;
-  std::string started;  ///< UTC, as 2026-01-31T23:59:59Z
+  std::chrono::system_clock::time_point started;
   bool resumed = false;
   std::optional<GlIdentity> gl = {};  ///< what ran the shaders
 };
 
 /// What decides about the bytes of rows besides the experiment: version, commit, compiler, flags, cpu.
 nlohmann::ordered_json build_identity();
+
+/// That, and how and when.
+nlohmann::ordered_json to_json(const Provenance& provenance);
 
 /// What a result says of a field: size, range of the data, file.
 nlohmann::ordered_json describe(const Field& field);
@@ -44,8 +48,9 @@ std::string result_text(const nlohmann::ordered_json& result);
 /// Reads a result and checks its form as far as the program uses it. Throws InputError.
 JsonReader read_result(const std::string& path);
 
-/// The table of claims: what is stated, what was measured, the verdict.
-std::string claims_table(const nlohmann::ordered_json& result);
+/// Claims as a result's `published` has them, or the ledger's rows, for a terminal: what is stated, what was measured,
+/// the verdict, and the experiment where they name one.
+std::string claims_table(const nlohmann::ordered_json& claims);
 
 /// A line for every check of the result that does not hold.
 std::vector<std::string> broken_checks(const nlohmann::ordered_json& result);
