@@ -7,6 +7,7 @@
 #include "schemes/order3.hpp"
 #include "schemes/virtual_catmull_rom.hpp"
 #include "schemes/virtual_samples.hpp"
+#include "tables/table_builder.hpp"
 #include "transfer/study_transfers.hpp"
 
 #include <array>
@@ -30,6 +31,9 @@ const std::vector<IntegralScheme>& integral_schemes();
 
 /// The one of this name; null if there is none.
 const IntegralScheme* find_integral_scheme(std::string_view name);
+
+/// From transfer functions to tables of pre-integrated slabs (tables/table_builders.cpp).
+const std::vector<TableBuilder>& table_builders();
 
 /// An ingredient without a type of its own.
 struct Entry {

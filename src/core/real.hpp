@@ -31,6 +31,9 @@ class Binary32 {
   friend Binary32 sqrt(Binary32 x) { return round(std::sqrt(x.value_)); }
   friend Binary32 expm1(Binary32 x) { return round(std::expm1(x.value_)); }
   friend Binary32 log1p(Binary32 x) { return round(std::log1p(x.value_)); }
+  friend Binary32 pow(Binary32 x, Binary32 y) { return round(std::pow(x.value_, y.value_)); }
+  friend Binary32 acos(Binary32 x) { return round(std::acos(x.value_)); }
+  friend Binary32 sin(Binary32 x) { return round(std::sin(x.value_)); }
 
  private:
   static constexpr Binary32 round(float value) {

@@ -9,6 +9,7 @@ extern const char* const rule_texts;        ///< of the rules, in the order of s
 extern const char* const sampled_march;     ///< of src/gl/sampled_march.glsl
 extern const char* const texture_unit;      ///< of src/textures/texture_unit.glsl
 extern const char* const texture_look_ups;  ///< of src/gl/texture_look_ups.glsl
+extern const char* const table_builds;      ///< of src/gl/table_builds.glsl
 extern const char* const renderer_shader;   ///< of src/gl/hand_written_renderer.frag
 
 }  // namespace raytruth

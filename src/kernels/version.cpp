@@ -1,7 +1,11 @@
 // Compiled once for every level of x86-64, with RAYTRUTH_LEVEL naming it.
 
+#include "kernels/look_up_kernel.hpp"
+#include "kernels/moment_kernel.hpp"
 #include "kernels/piece_kernel.hpp"
+#include "kernels/second_order_kernel.hpp"
 #include "kernels/stretch_kernel.hpp"
+#include "kernels/subrange_kernel.hpp"
 
 namespace raytruth::inline RAYTRUTH_LEVEL {
 
@@ -41,5 +45,11 @@ extern const Kernels<3> kernels_of_3;
 extern const Kernels<9> kernels_of_9;
 const Kernels<3> kernels_of_3 = all_of<3>;
 const Kernels<9> kernels_of_9 = all_of<9>;
+
+extern const TableKernels kernels_of_tables;
+const TableKernels kernels_of_tables{float_lane_count, run_band<SlabAlgebra>, run_band<MomentAlgebra>};
+
+extern const SlabKernels kernels_of_slabs;
+const SlabKernels kernels_of_slabs{march_four, second_order_row};
 
 }  // namespace raytruth::inline RAYTRUTH_LEVEL

@@ -1,5 +1,6 @@
 #include "reference/arb_integral.hpp"
 
+#include "reference/arb_complex.hpp"
 #include "reference/arb_stretches.hpp"
 
 #include <acb_calc.h>
@@ -13,6 +14,7 @@ namespace {
 
 using arb::Ball;
 using arb::Color;
+using arb::evaluate;
 using arb::Piece;
 using arb::Polynomial;
 using arb::Stretch;
@@ -28,25 +30,6 @@ struct Integrand {
   Polynomial depth;
   std::int64_t evaluations = 0;
 };
-
-/// p(z) for a box z: Taylor's form about its centre is much narrower than Horner's on wide boxes.
-void evaluate(acb_t result, const Polynomial& p, const acb_t z, slong bits) {
-  if (acb_rel_accuracy_bits(z) > bits / 4) {
-    arb_poly_evaluate_acb_horner(result, p.get(), z, bits);
-    return;
-  }
-  acb_poly_t shifted;
-  acb_t middle;
-  acb_poly_init(shifted);
-  acb_init(middle);
-  acb_get_mid(middle, z);
-  acb_poly_set_arb_poly(shifted, p.get());
-  acb_poly_taylor_shift_horner(shifted, shifted, middle, bits);
-  acb_sub(middle, z, middle, bits);
-  acb_poly_evaluate_horner(result, shifted, middle, bits);
-  acb_clear(middle);
-  acb_poly_clear(shifted);
-}
 
 int integrand(acb_ptr result, const acb_t z, void* parameter, slong /*order*/, slong bits) {
   auto& [factor, depth, evaluations] = *static_cast<Integrand*>(parameter);

@@ -1,6 +1,6 @@
 // What the rules need of GLSL 4.30: put this text in front of theirs. In C++ Rules<Real> (rules.hpp) says the same.
 //
-// exp and log of GLSL may be off by many units in the last place, the more so where 1 is subtracted or added; these two
+// The functions of GLSL may be off by many units in the last place, the more so where 1 is subtracted or added; these
 // are not. Where values are below 2^-126 they may be taken for 0.
 
 #define real float
@@ -31,4 +31,30 @@ float log1p(float x) {
   float series = z * (2.0 / 3.0 + z * (2.0 / 5.0 + z * (2.0 / 7.0 + z * (2.0 / 9.0))));
   float square = 0.5 * f * f;
   return s * (square + series) + low - square + f + float(k) * 0.693359375;
+}
+
+// x^y for 0 <= x and 1 <= y, to some units in the last place of 1 or of the value, whichever is larger.
+float power(float x, float y) {
+  return x > 0.0 ? 1.0 + expm1(y * log1p(max(x, 5.9604645e-8) - 1.0)) : 0.0;
+}
+
+// The sine of 0 <= x <= pi: with k quarters of the circle off, minimax polynomials on [-pi/4, pi/4] (Moshier, Cephes).
+float sine(float x) {
+  float k = floor(x * 0.636619772 + 0.5);
+  float r = ((x - k * 1.5703125) - k * 4.83751297e-4) - k * 7.54978942e-8;
+  float z = r * r;
+  if (k == 1.0) return 1.0 - 0.5 * z + z * z * (4.16666457e-2 + z * (-1.38873162e-3 + z * 2.44331571e-5));
+  float value = r + r * z * (-1.66666546e-1 + z * (8.33216087e-3 + z * -1.95152959e-4));
+  return k == 0.0 ? value : -value;
+}
+
+// The arc cosine of -1 <= x <= 1 by the arc sine of at most 1/2, a minimax polynomial (Moshier, Cephes).
+float arc_cosine(float x) {
+  bool is_middle = abs(x) <= 0.5;
+  float z = is_middle ? x * x : 0.5 - 0.5 * abs(x);
+  float y = is_middle ? x : sqrt(z);
+  float p = 1.66667522e-1 + z * (7.49530027e-2 + z * (4.54700260e-2 + z * (2.41813112e-2 + z * 4.21631990e-2)));
+  float angle = y + y * z * p;
+  if (is_middle) return 1.57079633 - angle;
+  return x > 0.0 ? 2.0 * angle : 3.14159265 - 2.0 * angle;
 }

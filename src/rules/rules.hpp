@@ -38,6 +38,18 @@ struct Rules {
     using std::log1p;
     return log1p(x);
   }
+  static real power(const real& x, const real& y) {
+    using std::pow;
+    return pow(x, y);
+  }
+  static real arc_cosine(const real& x) {
+    using std::acos;
+    return acos(x);
+  }
+  static real sine(const real& x) {
+    using std::sin;
+    return sin(x);
+  }
 
   // clang-format off
 #include "rules/order0.glsl"
@@ -53,6 +65,12 @@ struct Rules {
 #include "rules/simpson.glsl"
 #include "rules/opacity_correction.glsl"
 #include "rules/texture_filter.glsl"
+#include "rules/table_look_up.glsl"
+#include "rules/normal_curves.glsl"
+#include "rules/highlights.glsl"
+#include "rules/lighting.glsl"
+#include "rules/fades.glsl"
+#include "rules/gooch.glsl"
   // clang-format on
 
   static Bernstein<3, Real> cubic(const vec4& b) { return {{b[0], b[1], b[2], b[3]}}; }

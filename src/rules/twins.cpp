@@ -122,11 +122,58 @@ Twin difference_twin(Twin twin, double number) {
   return twin;
 }
 
+/// Of a weight or a coefficient that belongs to normals; last comes the cosine of their angle 2a, as which approaches
+/// 180 degrees terms grow like 1 / cos a: `scale` times that.
+template <class Scale>
+Twin with_normals(Twin twin, Scale&& scale) {
+  twin.summand = [scale](std::span<const float> numbers, std::size_t) {
+    return scale(numbers) / std::sqrt((1 + static_cast<double>(numbers.back())) / 2);
+  };
+  return twin;
+}
+
+/// The larger of the projections of the two normals, which come first.
+double larger_projection(std::span<const float> numbers) {
+  return std::max(std::abs(numbers[0]), std::abs(numbers[1]));
+}
+
+/// A cubic's coefficient has up to eight times a normal's projection, 4 skew (back - front).
+double largest_multiple(std::span<const float> numbers) { return 8 * larger_projection(numbers); }
+
+/// A cubic curve between normals.
+template <class Member>
+Twin arc_twin(std::string_view name, Member member, Twin::Bounds bounds) {
+  return with_normals(twin(name, member, {Domain::projection, Domain::projection, Domain::cosine}, bounds),
+                      largest_multiple);
+}
+
 /// Of arguments slab, opacity, ratio: the opacity is the corrected one of the slab.
 Twin corrected_slab_twin(Twin twin) {
   twin.reconcile = [](std::span<float> numbers) {
     const Binary32 corrected = Rules<Binary32>{}.opacity_correction(Binary32(numbers[3]), Binary32(numbers[5]));
     numbers[4] = static_cast<float>(to_double(corrected));
+  };
+  return twin;
+}
+
+/// Of arguments coordinate, size: half a texel is taken off; tables have two entries or more.
+Twin table_share_twin(Twin twin) {
+  twin.summand = [](std::span<const float> numbers, std::size_t) {
+    return 0.5 / (static_cast<double>(numbers[1]) - 1);
+  };
+  twin.reconcile = [](std::span<float> numbers) { numbers[1] = std::max(numbers[1], 2.0F); };
+  return twin;
+}
+
+/// Light of a slab: its moments come first, `moment_count` numbers, then what they are multiplied by.
+Twin lighting_twin(Twin twin, std::size_t moment_count) {
+  twin.summand = [moment_count](std::span<const float> numbers, std::size_t) {
+    const auto largest = [](std::span<const float> terms) {
+      double result = 0;
+      for (const float term : terms) result = std::max(result, std::abs(static_cast<double>(term)));
+      return result;
+    };
+    return largest(numbers.first(moment_count)) * largest(numbers.subspan(moment_count));
   };
   return twin;
 }
@@ -137,9 +184,30 @@ std::vector<Twin> make_twins() {
   constexpr Twin::Bounds product{.gl = 1, .rounding = 1};
   constexpr Twin::Bounds sum{.gl = 4, .rounding = 8};
   constexpr Twin::Bounds absorbing{.gl = 8, .rounding = 8};
+  constexpr Twin::Bounds circular{.gl = 8, .rounding = 8};
   const std::vector three(3, signal);
   const std::vector four(4, signal);
   const std::vector three_split{signal, signal, signal, split};
+  Twin normal_curve_twin = twin(
+      "normal_curve", [](auto r) { return &decltype(r)::normal_curve; }, {projection, projection, unit, unit}, sum);
+  normal_curve_twin.summand = [](std::span<const float> numbers, std::size_t) { return largest_multiple(numbers); };
+  Twin fades_cone_twin = twin(
+      "fades_cone", [](auto r) { return &decltype(r)::fades_cone; }, {signals, shininess}, sum);
+  fades_cone_twin.summand = [](std::span<const float> numbers, std::size_t) {
+    return std::max(1.0, std::abs(static_cast<double>(numbers[0]))) * static_cast<double>(numbers[4]);  // of n (c - 1)
+  };
+  // A hump of a cubic, its ends well below: what is larger by rounding alone is anybody's guess.
+  Twin fades_peak_twin = twin(
+      "fades_peak", [](auto r) { return &decltype(r)::fades_peak; }, {signals, projection, projection}, sum);
+  fades_peak_twin.summand = [](std::span<const float>, std::size_t) { return 4.0; };
+  fades_peak_twin.reconcile = [](std::span<float> numbers) {
+    for (float& number : numbers) number = std::min(std::abs(number), 1.0F);
+    const float hump = 2 + 2 * numbers[1];
+    const float skew = numbers[3] / 2 - 0.25F;
+    const float front = -numbers[0] / 2;
+    const std::array<float, 6> arguments{front, hump, -hump, skew, front, front + skew};
+    std::copy(arguments.begin(), arguments.end(), numbers.begin());
+  };
   return {
       sum_twin(
           "order0", [](auto r) { return &decltype(r)::order0; }, {signal}, exact),
@@ -205,6 +273,89 @@ std::vector<Twin> make_twins() {
           "texel_clamped_to_edge", [](auto r) { return &decltype(r)::texel_clamped_to_edge; }, {texel, size}, exact),
       sum_twin(
           "filter_linear", [](auto r) { return &decltype(r)::filter_linear; }, {signals, signals, unit}, sum),
+      twin(
+          "table_coordinate", [](auto r) { return &decltype(r)::table_coordinate; }, {unit, size}, sum),
+      table_share_twin(twin(
+          "table_share", [](auto r) { return &decltype(r)::table_share; }, {coordinate, size}, sum)),
+      sum_twin(
+          "table_bilinear", [](auto r) { return &decltype(r)::table_bilinear; },
+          {signals, signals, signals, signals, unit, unit}, sum),
+      twin(
+          "normal_curve_cosine", [](auto r) { return &decltype(r)::normal_curve_cosine; }, {cosine}, sum),
+      twin(
+          "normal_curve_rise", [](auto r) { return &decltype(r)::normal_curve_rise; }, {cosine}, sum),
+      normal_curve_twin,
+      sum_twin(
+          "normal_curve_value", [](auto r) { return &decltype(r)::normal_curve_value; }, {signals, unit}, sum),
+      with_normals(twin(
+                       "mean_gradient", [](auto r) { return &decltype(r)::mean_gradient; },
+                       {projection, projection, cosine}, sum),
+                   larger_projection),
+      sum_twin(
+          "linear_gradient", [](auto r) { return &decltype(r)::linear_gradient; }, {signal, signal}, sum),
+      arc_twin(
+          "quadratic_arc", [](auto r) { return &decltype(r)::quadratic_arc; }, sum),
+      arc_twin(
+          "quadratic_arc_printed", [](auto r) { return &decltype(r)::quadratic_arc_printed; }, sum),
+      arc_twin(
+          "circle_arc", [](auto r) { return &decltype(r)::circle_arc; }, circular),
+      arc_twin(
+          "circle_arc_tuned", [](auto r) { return &decltype(r)::circle_arc_tuned; }, sum),
+      arc_twin(
+          "minimax_arc", [](auto r) { return &decltype(r)::minimax_arc; }, sum),
+      arc_twin(
+          "minimax_circle_arc", [](auto r) { return &decltype(r)::minimax_circle_arc; }, sum),
+      twin(
+          "normalized_linear", [](auto r) { return &decltype(r)::normalized_linear; }, {unit, cosine}, sum),
+      with_normals(twin(
+                       "slerp", [](auto r) { return &decltype(r)::slerp; }, {unit, cosine}, circular),
+                   [](std::span<const float>) { return 1.0; }),
+      difference_twin(
+          twin(
+              "highlight_lobe", [](auto r) { return &decltype(r)::highlight_lobe; }, {projection, shininess}, sum),
+          1),
+      difference_twin(twin(
+                          "highlight_family", [](auto r) { return &decltype(r)::highlight_family; },
+                          {projection, shininess, degree}, sum),
+                      1),
+      twin(
+          "lighting_clamped", [](auto r) { return &decltype(r)::lighting_clamped; }, {projection}, exact),
+      twin(
+          "lighting_mirrored", [](auto r) { return &decltype(r)::lighting_mirrored; }, {projection}, exact),
+      lighting_twin(
+          twin(
+              "lighting_integral", [](auto r) { return &decltype(r)::lighting_integral; }, {signals, signals}, sum),
+          4),
+      lighting_twin(twin(
+                        "lighting_interpolated", [](auto r) { return &decltype(r)::lighting_interpolated; },
+                        {signals, projection, projection}, sum),
+                    4),
+      fades_cone_twin,
+      lighting_twin(twin(
+                        "fades_integral", [](auto r) { return &decltype(r)::fades_integral; },
+                        {signals, signals, projection, projection}, sum),
+                    4),
+      lighting_twin(twin(
+                        "fades_diffuse_printed", [](auto r) { return &decltype(r)::fades_diffuse_printed; },
+                        {signals, signals, projection, projection}, sum),
+                    4),
+      fades_peak_twin,
+      lighting_twin(twin(
+                        "fades_highlight", [](auto r) { return &decltype(r)::fades_highlight; },
+                        {signals, unit, signals, projection, projection}, sum),
+                    5),
+      lighting_twin(twin(
+                        "fades_highlight_printed", [](auto r) { return &decltype(r)::fades_highlight_printed; },
+                        {signals, signals, signals, projection, projection, shininess, projection, projection}, sum),
+                    8),
+      lighting_twin(twin(
+                        "gooch_constant", [](auto r) { return &decltype(r)::gooch_constant; },
+                        {signals, signals, unit, unit, unit, unit}, sum),
+                    8),
+      lighting_twin(twin(
+                        "gooch_linear", [](auto r) { return &decltype(r)::gooch_linear; },
+                        {signals, signals, signals, unit, unit, unit, unit}, sum),
+                    8),
   };
 }
 
@@ -272,6 +423,14 @@ float random_number(Domain domain, std::size_t component, Draw& draw) {
       return draw.integer(1, 2048);
     case Domain::levels:
       return draw.uniform() < 0.125 ? 0.0F : draw.power_of_two(6, 16);
+    case Domain::projection:
+      return draw.uniform(-1, 1);
+    case Domain::cosine:
+      return draw.uniform(-0.99, 1);
+    case Domain::shininess:
+      return draw.logarithmic(1, 100);
+    case Domain::degree:
+      return draw.integer(1, 3);
   }
   return 0;
 }
@@ -302,10 +461,19 @@ float adversarial_number(Domain domain, std::size_t component, Draw& draw) {
       return draw.one_of(std::array{1.0F / 64, 0.5F - epsilon, 0.5F, 0.5F + epsilon, 1 - 1.0F / 64});
     case Domain::position:
       return draw.integer(0, 2047) + draw.one_of(std::array{-0.5F, -epsilon, 0.0F, epsilon, 0.5F});
+    case Domain::projection:
+      return draw.one_of(std::array{0.0F, -0.0F, denormal, smallest_normal, epsilon, 0.5F, 1 - epsilon / 2, 1.0F,
+                                    -epsilon, -0.5F, -1.0F});
+    case Domain::cosine:
+      return draw.one_of(std::array{1.0F, 1 - epsilon / 2, 1 - epsilon, 0.5F, 0.5F + epsilon, denormal, 0.0F, -epsilon,
+                                    -0.5F, -0.5F - epsilon, -1 + 1.0F / 128});
+    case Domain::shininess:
+      return draw.one_of(std::array{1.0F, 1 + epsilon, 2.0F, 10.0F, 50.5F, 128.0F, 1e4F});
     case Domain::is_linear:
     case Domain::texel:
     case Domain::size:
     case Domain::levels:
+    case Domain::degree:
       return random_number(domain, component, draw);
   }
   return 0;
@@ -315,7 +483,7 @@ float adversarial_number(Domain domain, std::size_t component, Draw& draw) {
 
 std::span<const DomainInfo> domains() {
   using enum Domain;
-  static constexpr std::array<DomainInfo, 16> list{{
+  static constexpr std::array<DomainInfo, 20> list{{
       {signal, "signal", "real", "scalar", "0 to 1"},
       {signals, "signals", "vec4", "scalar", "0 to 1"},
       {optics, "optics", "vec4", "1/length", "emission density 0 to 1, extinction 1e-6 to 1e2"},
@@ -332,6 +500,10 @@ std::span<const DomainInfo> domains() {
       {texel, "texel", "real", "texel", "-1 to 2048"},
       {size, "size", "real", "texel", "1 to 2048"},
       {levels, "levels", "real", "", "0, and 2^6 to 2^16"},
+      {projection, "projection", "real", "", "-1 to 1"},
+      {cosine, "cosine", "real", "", "-0.99 to 1"},
+      {shininess, "shininess", "real", "", "1 to 100"},
+      {degree, "degree", "real", "", "1 to 3"},
   }};
   return list;
 }

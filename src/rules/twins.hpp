@@ -30,6 +30,10 @@ enum class Domain {
   texel,       ///< the index of one
   size,        ///< number of texels
   levels,      ///< number of weights
+  projection,  ///< of a unit vector on another one
+  cosine,      ///< of the angle between two unit vectors that are not opposite
+  shininess,   ///< of a highlight, also its exponent
+  degree,      ///< of a highlight
 };
 
 struct DomainInfo {

@@ -1,12 +1,15 @@
 #pragma once
 
 #include "schemes/integral_scheme.hpp"
+#include "schemes/omissions.hpp"
 #include "schemes/optics_lookup.hpp"
 #include "schemes/outcome.hpp"
 #include "schemes/virtual_catmull_rom.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace raytruth {
@@ -17,11 +20,13 @@ struct SampledRay {
   std::vector<Real> values;   ///< at the samples
   std::vector<Real> middles;  ///< halfway from each sample to the next
   std::vector<Real> widths;   ///< distance of each sample from the next
-  std::size_t full = 0;       ///< the first so many widths count as equal, those of virtual samples
+  std::vector<double> positions;
+  std::size_t full = 0;  ///< the first so many widths count as equal, those of virtual samples
 
   template <int Degree>
   SampledRay(const Chain<Degree>& signal, const Samples<double>& samples) : full(full_intervals(samples)) {
     for (const double value : samples.values) values.emplace_back(value);
+    for (const DoubleDouble& position : samples.positions) positions.push_back(static_cast<double>(position));
     for (std::size_t k = 0; k < samples.interval_count(); ++k) {
       const double width = samples.length_of(k);
       widths.emplace_back(width);
@@ -38,11 +43,17 @@ class SampledMarch {
  public:
   using vec4 = typename Rules<Real>::vec4;
 
-  SampledMarch(const Sampled& method, const OpticsLookup<Real>& look_up, const SampledRay<Real>& ray)
-      : method_(method), look_up_(look_up), ray_(ray), is_linear_(method.absorption == Absorption::linear) {}
+  SampledMarch(const Sampled& method, const OpticsLookup<Real>& look_up, const SampledRay<Real>& ray,
+               const Omissions& omissions)
+      : method_(method),
+        look_up_(look_up),
+        ray_(ray),
+        omissions_(omissions),
+        is_linear_(method.absorption == Absorption::linear) {}
 
   Outcome<Real> operator()() {
-    for (std::size_t k = 0; k < ray_.widths.size();) k += composite_from(k);
+    for (std::size_t k = 0; k < ray_.widths.size() && ray_slab_[3] < Real(omissions_.opaque);)
+      k += is_omitted(k) ? 1 : composite_from(k);
     outcome_.fetches = static_cast<std::int64_t>(holds_one_sample() ? ray_.widths.size() : ray_.values.size());
     outcome_.voxels = voxels_per_fetch * outcome_.fetches;
     outcome_.color = ray_slab_.template head<3>();
@@ -51,6 +62,12 @@ class SampledMarch {
   }
 
  private:
+  /// Whether all of the slab that begins at sample k is left out.
+  [[nodiscard]] bool is_omitted(std::size_t k) const {
+    const std::size_t end = std::min(k + (method_.rule == SampledRule::simpson ? 2 : 1), ray_.widths.size());
+    return omissions_.omit(ray_.positions[k], ray_.positions[end]);
+  }
+
   /// Composites the slab that begins at sample k; the number of its intervals.
   std::size_t composite_from(std::size_t k) {
     switch (method_.rule) {
@@ -81,7 +98,7 @@ class SampledMarch {
 
   void composite_trapezoid(std::size_t k) {
     const vec4 front = optics_of_front(k);
-    last_ = optics(ray_.values[k + 1]);
+    look_up_last(k + 1);
     composite(rules_.trapezoid_slab(front, last_, ray_.widths[k], is_linear_));
   }
 
@@ -92,7 +109,7 @@ class SampledMarch {
     }
     const vec4 front = optics_of_front(k);
     const vec4 middle = optics(ray_.values[k + 1]);
-    last_ = optics(ray_.values[k + 2]);
+    look_up_last(k + 2);
     composite(rules_.simpson_slab(front, middle, last_, ray_.widths[k] + ray_.widths[k + 1], is_linear_));
     return 2;
   }
@@ -120,8 +137,13 @@ class SampledMarch {
     return look_up_(value);
   }
 
-  /// At sample k, which the slab before has looked up.
-  vec4 optics_of_front(std::size_t k) { return k == 0 ? optics(ray_.values[0]) : last_; }
+  /// At sample k, which the slab before has looked up, unless it was left out.
+  vec4 optics_of_front(std::size_t k) { return last_sample_ == k ? last_ : optics(ray_.values[k]); }
+
+  void look_up_last(std::size_t k) {
+    last_ = optics(ray_.values[k]);
+    last_sample_ = k;
+  }
 
   void composite(const vec4& slab) {
     ++outcome_.composites;
@@ -143,17 +165,20 @@ class SampledMarch {
   const Sampled& method_;
   const OpticsLookup<Real>& look_up_;
   const SampledRay<Real>& ray_;
+  const Omissions& omissions_;
   bool is_linear_;
   Rules<Real> rules_;
   vec4 last_ = vec4::Constant(Real(0));  ///< optics at the back of the slab before
+  std::optional<std::size_t> last_sample_;
   vec4 ray_slab_ = vec4::Constant(Real(0));
   Outcome<Real> outcome_;
 };
 
 /// The ray by a sampled scheme.
 template <class Real>
-Outcome<Real> march(const Sampled& method, const OpticsLookup<Real>& look_up, const SampledRay<Real>& ray) {
-  return SampledMarch<Real>(method, look_up, ray)();
+Outcome<Real> march(const Sampled& method, const OpticsLookup<Real>& look_up, const SampledRay<Real>& ray,
+                    const Omissions& omissions = {}) {
+  return SampledMarch<Real>(method, look_up, ray, omissions)();
 }
 
 }  // namespace raytruth

@@ -7,6 +7,7 @@
 #include "signals/piecewise_polynomial.hpp"
 
 #include <cmath>
+#include <numeric>
 
 namespace raytruth {
 
@@ -75,14 +76,24 @@ SchemeIntegral::Approximation SchemeIntegral::approximate_by(std::string_view na
   return result;
 }
 
+SchemeIntegral::Approximation SchemeIntegral::one_slab_per_piece(const Chain<3>& signal, std::int64_t fetches) {
+  Approximation result{.fetches = fetches, .slabs = std::vector<std::size_t>(signal.pieces.size() + 1)};
+  std::iota(result.slabs.begin(), result.slabs.end(), std::size_t{0});
+  return result;
+}
+
 template <class SlabOf>
-Outcome<> SchemeIntegral::composite(const Approximation& approximation, SlabOf&& slab_of) const {
+Outcome<> SchemeIntegral::composite(const Approximation& approximation, const Omissions& omissions,
+                                    SlabOf&& slab_of) const {
   Rules<double> rules;
   Rules<double>::vec4 ray = Rules<double>::vec4::Constant(0);
-  for (std::size_t i = 0; i + 1 < approximation.slabs.size(); ++i) {
+  for (std::size_t i = 0; i + 1 < approximation.slabs.size() && ray[3] < omissions.opaque; ++i) {
     const std::size_t first = approximation.slabs[i];
-    const SlabPieces slab(approximation_.pieces.data() + first, approximation.slabs[i + 1] - first);
-    ray = rules.over(ray, slab_of(slab));
+    const std::size_t next = approximation.slabs[i + 1];
+    const auto& pieces = approximation_.pieces;
+    if (omissions.omit(static_cast<double>(pieces[first].start), static_cast<double>(approximation_.end_of(next - 1))))
+      continue;
+    ray = rules.over(ray, slab_of(SlabPieces(pieces.data() + first, next - first)));
   }
   Outcome<> outcome;
   outcome.color = ray.head<3>();
@@ -90,43 +101,58 @@ Outcome<> SchemeIntegral::composite(const Approximation& approximation, SlabOf&&
   return counted(outcome, approximation.fetches, approximation.slabs.size() - 1);
 }
 
+Outcome<> SchemeIntegral::integrate_exactly(const Approximation& approximation, const Omissions& omissions) {
+  if (omissions.are_none())
+    return counted(outcome_of(exact_(approximation_)), approximation.fetches, approximation.slabs.size() - 1);
+  return composite(approximation, omissions, [this](SlabPieces pieces) {
+    slab_.pieces.assign(pieces.begin(), pieces.end());
+    slab_.end = pieces.back().start + DoubleDouble(pieces.back().length);
+    const Certified slab = exact_(slab_);
+    return Rules<double>::vec4(slab.color[0], slab.color[1], slab.color[2], slab.opacity);
+  });
+}
+
 template <int Degree>
 Outcome<> SchemeIntegral::integrate(const Sampled& method, const IntegralScheme& scheme, const Chain<Degree>& signal,
-                                    const Samples<double>& samples) {
+                                    const Samples<double>& samples, const Omissions& omissions) {
   if (const auto why = refusal_of(scheme.signal, samples); !why.empty()) return refused(why);
-  return march(method, look_up_, SampledRay<double>(signal, samples));
+  return march(method, look_up_, SampledRay<double>(signal, samples), omissions);
 }
 
 template <int Degree>
 Outcome<> SchemeIntegral::integrate(const Ideal& /*method*/, const IntegralScheme& scheme, const Chain<Degree>& signal,
-                                    const Samples<double>& samples) {
+                                    const Samples<double>& samples, const Omissions& omissions) {
   const Approximation approximation = approximate_by(scheme.signal, signal, samples);
   if (!approximation.refusal.empty()) return refused(approximation.refusal);
-  return counted(outcome_of(exact_(approximation_)), approximation.fetches, approximation.slabs.size() - 1);
+  return integrate_exactly(approximation, omissions);
 }
 
 template <int Degree>
 Outcome<> SchemeIntegral::integrate(const WithoutAttenuation& /*method*/, const IntegralScheme& scheme,
-                                    const Chain<Degree>& signal, const Samples<double>& samples) {
+                                    const Chain<Degree>& signal, const Samples<double>& samples,
+                                    const Omissions& omissions) {
   const Approximation approximation = approximate_by(scheme.signal, signal, samples);
   if (!approximation.refusal.empty()) return refused(approximation.refusal);
-  return composite(approximation, [&](SlabPieces slab) { return unattenuated_slab(slab, transfer_, emission_); });
+  return composite(approximation, omissions,
+                   [&](SlabPieces slab) { return unattenuated_slab(slab, transfer_, emission_); });
 }
 
 template <int Degree>
 Outcome<> SchemeIntegral::integrate(const Iterations& method, const IntegralScheme& scheme, const Chain<Degree>& signal,
-                                    const Samples<double>& samples) {
+                                    const Samples<double>& samples, const Omissions& omissions) {
   const Approximation approximation = approximate_by(scheme.signal, signal, samples);
   if (!approximation.refusal.empty()) return refused(approximation.refusal);
-  return composite(approximation, [&](SlabPieces slab) { return iterated_slab(slab, look_up_, method); });
+  return composite(approximation, omissions, [&](SlabPieces slab) { return iterated_slab(slab, look_up_, method); });
 }
 
 template <int Degree>
 Outcome<> SchemeIntegral::integrate(const CellCubic& /*method*/, const IntegralScheme& /*scheme*/,
-                                    const Chain<Degree>& signal, const Samples<double>& /*samples*/) {
+                                    const Chain<Degree>& signal, const Samples<double>& /*samples*/,
+                                    const Omissions& omissions) {
   if constexpr (Degree == 3) {
+    approximation_ = signal;
     const auto cells = static_cast<std::int64_t>(signal.pieces.size());
-    Outcome<> outcome = counted(outcome_of(exact_(signal)), voxels_per_fetch * cells, signal.pieces.size());
+    Outcome<> outcome = integrate_exactly(one_slab_per_piece(signal, voxels_per_fetch * cells), omissions);
     outcome.voxels = voxels_per_fetch * cells;
     return outcome;
   } else {
@@ -136,17 +162,20 @@ Outcome<> SchemeIntegral::integrate(const CellCubic& /*method*/, const IntegralS
 
 template <int Degree>
 Outcome<> SchemeIntegral::integrate(const CellAdaptive& /*method*/, const IntegralScheme& /*scheme*/,
-                                    const Chain<Degree>& signal, const Samples<double>& samples) {
+                                    const Chain<Degree>& signal, const Samples<double>& samples,
+                                    const Omissions& omissions) {
   const std::int64_t fetches =
       approximate_cells(signal, static_cast<std::int64_t>(samples.positions.size()), approximation_);
-  return counted(outcome_of(exact_(approximation_)), fetches, signal.pieces.size());
+  Outcome<> outcome = integrate_exactly(one_slab_per_piece(approximation_, fetches), omissions);
+  outcome.lookups = outcome.composites = static_cast<std::int64_t>(signal.pieces.size());
+  return outcome;
 }
 
 template <int Degree>
 Outcome<> SchemeIntegral::operator()(const IntegralScheme& scheme, const Chain<Degree>& signal,
-                                     const Samples<double>& samples) {
-  Outcome<> outcome =
-      std::visit([&](const auto& method) { return integrate(method, scheme, signal, samples); }, scheme.method);
+                                     const Samples<double>& samples, const Omissions& omissions) {
+  Outcome<> outcome = std::visit(
+      [&](const auto& method) { return integrate(method, scheme, signal, samples, omissions); }, scheme.method);
   return is_finite(outcome) ? outcome : refused("its result is beyond the range of binary64");
 }
 
@@ -192,9 +221,10 @@ ErrorBudget SchemeIntegral::budget(const IntegralScheme& scheme, const Chain<Deg
   return result;
 }
 
-template Outcome<> SchemeIntegral::operator()(const IntegralScheme&, const Chain<3>&, const Samples<double>&);
+template Outcome<> SchemeIntegral::operator()(const IntegralScheme&, const Chain<3>&, const Samples<double>&,
+                                              const Omissions&);
 template Outcome<> SchemeIntegral::operator()(const IntegralScheme&, const Chain<largest_degree>&,
-                                              const Samples<double>&);
+                                              const Samples<double>&, const Omissions&);
 template std::optional<Outcome<>> SchemeIntegral::in_binary32(const IntegralScheme&, const Chain<3>&,
                                                               const Samples<double>&);
 template std::optional<Outcome<>> SchemeIntegral::in_binary32(const IntegralScheme&, const Chain<largest_degree>&,

@@ -4,6 +4,7 @@
 #include "core/real.hpp"
 #include "reference/ray_integral.hpp"
 #include "schemes/integral_scheme.hpp"
+#include "schemes/omissions.hpp"
 #include "schemes/optics_lookup.hpp"
 #include "schemes/outcome.hpp"
 #include "schemes/samples.hpp"
@@ -42,9 +43,11 @@ class SchemeIntegral {
  public:
   SchemeIntegral(const PiecewiseLinear& transfer, Emission emission);
 
-  /// The scheme on these samples of the signal, a chain of degree 3 or 9 (`largest_degree`).
+  /// The scheme on these samples of the signal, a chain of degree 3 or 9 (`largest_degree`). Without its `omissions`;
+  /// the counts are those of the whole ray, and an exact integral has no radius then.
   template <int Degree>
-  Outcome<> operator()(const IntegralScheme& scheme, const Chain<Degree>& signal, const Samples<double>& samples);
+  Outcome<> operator()(const IntegralScheme& scheme, const Chain<Degree>& signal, const Samples<double>& samples,
+                       const Omissions& omissions = {});
 
   /// The same in binary32, samples, step and transfer function rounded to it; none but for sampled schemes.
   template <int Degree>
@@ -66,28 +69,33 @@ class SchemeIntegral {
   template <int Degree>
   Approximation approximate_by(std::string_view name, const Chain<Degree>& signal, const Samples<double>& samples);
 
+  static Approximation one_slab_per_piece(const Chain<3>& signal, std::int64_t fetches);
+
   /// The slabs of the approximate signal, each made by `slab_of`, front to back.
   template <class SlabOf>
-  Outcome<> composite(const Approximation& approximation, SlabOf&& slab_of) const;
+  Outcome<> composite(const Approximation& approximation, const Omissions& omissions, SlabOf&& slab_of) const;
+
+  /// The approximate signal, integrated exactly.
+  Outcome<> integrate_exactly(const Approximation& approximation, const Omissions& omissions);
 
   template <int Degree>
   Outcome<> integrate(const Sampled& method, const IntegralScheme& scheme, const Chain<Degree>& signal,
-                      const Samples<double>& samples);
+                      const Samples<double>& samples, const Omissions& omissions);
   template <int Degree>
   Outcome<> integrate(const Ideal& method, const IntegralScheme& scheme, const Chain<Degree>& signal,
-                      const Samples<double>& samples);
+                      const Samples<double>& samples, const Omissions& omissions);
   template <int Degree>
   Outcome<> integrate(const WithoutAttenuation& method, const IntegralScheme& scheme, const Chain<Degree>& signal,
-                      const Samples<double>& samples);
+                      const Samples<double>& samples, const Omissions& omissions);
   template <int Degree>
   Outcome<> integrate(const Iterations& method, const IntegralScheme& scheme, const Chain<Degree>& signal,
-                      const Samples<double>& samples);
+                      const Samples<double>& samples, const Omissions& omissions);
   template <int Degree>
   Outcome<> integrate(const CellCubic& method, const IntegralScheme& scheme, const Chain<Degree>& signal,
-                      const Samples<double>& samples);
+                      const Samples<double>& samples, const Omissions& omissions);
   template <int Degree>
   Outcome<> integrate(const CellAdaptive& method, const IntegralScheme& scheme, const Chain<Degree>& signal,
-                      const Samples<double>& samples);
+                      const Samples<double>& samples, const Omissions& omissions);
 
   PiecewiseLinear transfer_;
   Emission emission_;
@@ -95,6 +103,7 @@ class SchemeIntegral {
   OpticsLookup<double> look_up_;
   OpticsLookup<Binary32> look_up_in_binary32_;
   Chain<3> approximation_;
+  Chain<3> slab_;
 };
 
 }  // namespace raytruth

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace raytruth {
 
@@ -122,9 +123,11 @@ struct Reconstruction {
 /// be there for a moment at the piece's ends: that goes into `unclaimed`.
 ///
 /// chain(t) may be read with u = (t - start) / length, and with u from 0 to 1 between start and end_of.
+///
+/// Nothing is computed for pieces of which `is_needless` says so: their bounds are 0 and mean nothing.
 template <int Degree, class Exact>
 SignalError tracing_error(const Grid& grid, const Ray& ray, const Chain<Degree>& chain,
-                          const Reconstruction& reconstruction, Exact&& exact) {
+                          const Reconstruction& reconstruction, const std::vector<bool>& is_needless, Exact&& exact) {
   constexpr double value_noise = 0x1p-92;
   // For the rounding of the bounds themselves, sums of some twenty terms >= 0.
   constexpr double upwards = 1 + 0x1p-46;
@@ -138,6 +141,10 @@ SignalError tracing_error(const Grid& grid, const Ray& ray, const Chain<Degree>&
     const auto& b = piece.polynomial.coefficients;
     const DoubleDouble lambda_begin = lambda_end;
     lambda_end = line.at(chain.end_of(i));
+    if (!is_needless.empty() && is_needless[i]) {
+      error.of_pieces.push_back(0);
+      continue;
+    }
     const ExactSegment segment(line, lambda_begin, lambda_end);
     const auto voxels = [&](const std::array<double, 3>& before, const std::array<double, 3>& behind) {
       std::array<std::int64_t, 3> first = segment.cell.cell;

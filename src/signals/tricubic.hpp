@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 namespace raytruth {
 
@@ -40,7 +41,7 @@ void trace_tricubic(const Grid& grid, CubicKernel kernel, const Ray& ray, Chain<
 /// As `trilinear_error`. `coefficient_error` bounds the error of each voxel of `grid`, for B-spline coefficients that
 /// were made from others: `prefilter_error`. B-splines being means, the signal is off by no more.
 SignalError tricubic_error(const Grid& grid, CubicKernel kernel, const Ray& ray, const Chain<9>& chain,
-                           double coefficient_error = 0);
+                           double coefficient_error = 0, const std::vector<bool>& is_needless = {});
 
 /// The coefficients of the cubic B-spline that passes through the voxels of a clamped grid: on every line the
 /// tridiagonal system (c_{i-1} + 4 c_i + c_{i+1}) / 6 = v_i with c_{-1} = c_0, c_n = c_{n-1}, axis after axis (M.

@@ -30,7 +30,9 @@ Chain<3> trace_trilinear(const Grid& grid, const Ray& ray);
 /// How far the chain of a ray may be from the signal along the ray at its exactly normalised direction: bounds for all
 /// that is rounded in the unit vector, the entry, the breaks and the coefficients, made by computing the coefficients a
 /// second time in 106 bits (`tracing_error`), in some five to ten times the chain's time. Beyond the field's end, where
-/// a chain may reach by rounding, s is the clamped field's. Zero where all voxels in reach are equal.
-SignalError trilinear_error(const Grid& grid, const Ray& ray, const Chain<3>& chain);
+/// a chain may reach by rounding, s is the clamped field's. Zero where all voxels in reach are equal. `is_needless`
+/// marks pieces whose errors nobody asks for.
+SignalError trilinear_error(const Grid& grid, const Ray& ray, const Chain<3>& chain,
+                            const std::vector<bool>& is_needless = {});
 
 }  // namespace raytruth

@@ -7,6 +7,7 @@
 #include "signals/marschner_lobb.hpp"
 #include "signals/tricubic.hpp"
 #include "signals/trilinear.hpp"
+#include "study/case_json.hpp"
 #include "study/read_transfer_function.hpp"
 #include "study/volume_source.hpp"
 #include "volume/read_volume.hpp"
@@ -27,30 +28,10 @@ using Json = nlohmann::ordered_json;
 constexpr double largest_value = 0x1p900;
 
 constexpr std::string_view why_no_integral = "the case states no transfer function";
-constexpr std::string_view why_not_finite = "its error is beyond the range of binary64";
-constexpr std::string_view why_not_converged = "error_bound holds, but is wider than is asked for";
 
-std::array<double, 3> read_vector(const JsonReader& json) {
-  const auto numbers = json.numbers(3);
-  if (numbers.size() != 3) json.refuse_value("a list of 3 numbers");
-  return {numbers[0], numbers[1], numbers[2]};
-}
-
-Grid read_inline_grid(const JsonReader& json) {
-  json.only({"size", "values"});
-  const auto sizes = json.at("size").items();
-  if (sizes.size() != 3) json.at("size").refuse_value("a list of 3 sizes");
-  Grid grid;
-  std::int64_t voxels = 1;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    grid.size[axis] = sizes[axis].integer(1, most_voxels);
-    if (grid.size[axis] > most_voxels / voxels) json.at("size").refuse("more voxels than 2^33", "fewer");
-    voxels *= grid.size[axis];
-  }
-  grid.values = json.at("values").numbers();
-  if (grid.values.size() != static_cast<std::size_t>(voxels))
-    json.at("values").refuse_value(fmt::format("a list of {} numbers, as size says,", voxels));
-  return grid;
+std::array<double, 3> read_place(const JsonReader& json) {
+  const Vector3<double> vector = read_vector(json);
+  return {vector[0], vector[1], vector[2]};
 }
 
 void read_piecewise_polynomial(const JsonReader& json, Case& ray) {
@@ -70,7 +51,7 @@ void read_piecewise_polynomial(const JsonReader& json, Case& ray) {
 
 /// Its origin, direction and length; the direction is checked.
 Ray read_ray(const JsonReader& json) {
-  Ray ray{.origin = read_vector(json.at("origin")), .direction = read_vector(json.at("direction"))};
+  Ray ray{.origin = read_place(json.at("origin")), .direction = read_place(json.at("direction"))};
   json.at("direction").blame_for([&ray] { return unit_direction(ray.direction); });
   if (const auto length = json.find("length")) ray.length = length->number(0);
   return ray;
@@ -94,16 +75,10 @@ void read_analytic(const JsonReader& json, Case& ray) {
   ray.formula = formula;
 }
 
-std::vector<std::string> read_schemes(const JsonReader& json) {
-  std::vector<std::string_view> allowed{"reference"};
-  for (const IntegralScheme& scheme : catalogue::integral_schemes()) allowed.push_back(scheme.name);
-  std::vector<std::string> schemes;
-  for (const JsonReader& item : json.items()) {
-    const std::string scheme = item.word(allowed);
-    if (std::find(schemes.begin(), schemes.end(), scheme) != schemes.end()) item.refuse_value("each scheme once");
-    schemes.push_back(scheme);
-  }
-  return schemes;
+std::vector<std::string_view> scheme_names() {
+  std::vector<std::string_view> names;
+  for (const IntegralScheme& scheme : catalogue::integral_schemes()) names.push_back(scheme.name);
+  return names;
 }
 
 template <int Degree>
@@ -113,8 +88,6 @@ void check_values(const JsonReader& json, const Chain<Degree>& signal) {
       if (!(std::abs(value) <= largest_value))
         json.refuse(fmt::format("values up to {}", value), "a signal of values up to 2^900 in magnitude");
 }
-
-Json refused(std::string_view why) { return {{"status", "refused"}, {"why", why}}; }
 
 bool is_refused(const Json& answer) { return answer.contains("status") && answer["status"] == "refused"; }
 
@@ -126,8 +99,6 @@ void take_samples(const Chain<Degree>& signal, const Sampling& sampling, Samples
                                  largest_sample_count));
   sample_cells(signal, samples);
 }
-
-Json color_json(const Vector3<double>& color) { return {color[0], color[1], color[2]}; }
 
 bool is_finite(const Vector3<double>& color, double opacity) {
   return color.isFinite().all() && std::isfinite(opacity);
@@ -141,12 +112,6 @@ Certified truth_of(const Case& ray, const Chain<Degree>& signal) {
   if (const auto* const analytic = std::get_if<AnalyticSignal>(&ray.formula))
     return arb_integral(*analytic, *ray.transfer, ray.emission);
   return RayIntegral(*ray.transfer, ray.emission)(signal, ray.signal_error);
-}
-
-void add_status(Json& answer, Status status) {
-  if (status == Status::converged) return;
-  answer["status"] = "not_converged";
-  answer["why"] = why_not_converged;
 }
 
 Json truth_json(const Certified& truth) {
@@ -236,23 +201,22 @@ class SchemeAnswers {
 
 }  // namespace
 
-Case CaseReader::read(const JsonReader& json) {
+Case CaseReader::read(const JsonReader& json, std::vector<std::string>& warnings) {
   json.only({"signal", "transfer_function", "emission", "sampling", "schemes"});
   const JsonReader signal = json.at("signal");
   std::vector<std::string_view> kinds(catalogue::signals.size());
   std::transform(catalogue::signals.begin(), catalogue::signals.end(), kinds.begin(),
                  [](const catalogue::Entry& entry) { return entry.name; });
   const std::string kind = signal.at("kind").word(kinds);
-  Case ray{json, read_sampling(json.at("sampling")), read_schemes(json.at("schemes")), std::nullopt};
-  if (const auto transfer = json.find("transfer_function")) ray.transfer = read_transfer_function(*transfer, warnings_);
-  if (const auto emission = json.find("emission"); emission && emission->word({"associated", "plain"}) == "plain")
-    ray.emission = Emission::plain;
+  Case ray{json, read_sampling(json.at("sampling")), read_schemes(json.at("schemes"), scheme_names()), std::nullopt};
+  if (const auto transfer = json.find("transfer_function")) ray.transfer = read_transfer_function(*transfer, warnings);
+  ray.emission = read_emission(json);
   // It refuses numbers that it cannot calculate with.
   if (ray.transfer) json.at("transfer_function").blame_for([&] { return RayIntegral(*ray.transfer, ray.emission); });
   if (kind == "trilinear")
-    read_trilinear(signal, ray);
+    read_trilinear(signal, ray, warnings);
   else if (kind == "tricubic")
-    read_tricubic(signal, ray);
+    read_tricubic(signal, ray, warnings);
   else if (kind == "marschner_lobb")
     read_marschner_lobb(signal, ray);
   else if (kind == "analytic")
@@ -263,16 +227,16 @@ Case CaseReader::read(const JsonReader& json) {
   return ray;
 }
 
-void CaseReader::read_trilinear(const JsonReader& json, Case& result) {
+void CaseReader::read_trilinear(const JsonReader& json, Case& result, std::vector<std::string>& warnings) {
   json.only({"kind", "volume", "repair", "origin", "direction", "length"});
   const Ray ray = read_ray(json);
-  const Grid& grid = read_volume_of(json);
+  const Grid& grid = read_volume_of(json, warnings);
   auto chain = json.at("origin").blame_for([&] { return trace_trilinear(grid, ray); });
   if (result.transfer) result.signal_error = trilinear_error(grid, ray, chain);
   result.signal = std::move(chain);
 }
 
-void CaseReader::read_tricubic(const JsonReader& json, Case& result) {
+void CaseReader::read_tricubic(const JsonReader& json, Case& result, std::vector<std::string>& warnings) {
   json.only({"kind", "volume", "repair", "origin", "direction", "length", "kernel", "prefilter"});
   const Ray ray = read_ray(json);
   const bool is_bspline = json.at("kernel").word({"bspline", "catmull_rom"}) == "bspline";
@@ -280,7 +244,7 @@ void CaseReader::read_tricubic(const JsonReader& json, Case& result) {
   const auto prefilter = json.find("prefilter");
   const bool is_prefiltered = prefilter && prefilter->boolean();
   if (is_prefiltered && !is_bspline) prefilter->refuse_value("false: catmull_rom passes through its voxels as it is;");
-  const Grid& voxels = read_volume_of(json);
+  const Grid& voxels = read_volume_of(json, warnings);
   const Grid coefficients = is_prefiltered ? bspline_coefficients(voxels) : Grid{};
   const Grid& grid = is_prefiltered ? coefficients : voxels;
   Chain<largest_degree> chain;
@@ -294,7 +258,7 @@ void CaseReader::read_tricubic(const JsonReader& json, Case& result) {
   result.signal = std::move(chain);
 }
 
-const Grid& CaseReader::read_volume_of(const JsonReader& signal) {
+const Grid& CaseReader::read_volume_of(const JsonReader& signal, std::vector<std::string>& warnings) {
   const JsonReader volume = signal.at("volume");
   if (volume.is_object()) {
     if (const auto repair = signal.find("repair")) repair->refuse_value("a repair of a file only");
@@ -306,7 +270,7 @@ const Grid& CaseReader::read_volume_of(const JsonReader& signal) {
   const std::string which = file.string() + (asks_for_repair(signal) ? " repaired" : "");
   if (which == last_volume_) return grid_;
   SourcedVolume read = read_sourced_volume(signal, folders_);
-  warnings_.insert(warnings_.end(), read.warnings.begin(), read.warnings.end());
+  warnings.insert(warnings.end(), read.warnings.begin(), read.warnings.end());
   grid_ = std::move(read.grid);
   last_volume_ = which;
   return grid_;

@@ -37,19 +37,15 @@ class CaseReader {
  public:
   explicit CaseReader(std::vector<std::filesystem::path> folders) : folders_(std::move(folders)) {}
 
-  /// Throws InputError.
-  Case read(const JsonReader& json);
-
-  /// One line each.
-  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+  /// Adds a line to `warnings` where an opacity is clamped or a volume looks damaged. Throws InputError.
+  Case read(const JsonReader& json, std::vector<std::string>& warnings);
 
  private:
-  void read_trilinear(const JsonReader& json, Case& ray);
-  void read_tricubic(const JsonReader& json, Case& ray);
-  const Grid& read_volume_of(const JsonReader& signal);
+  void read_trilinear(const JsonReader& json, Case& ray, std::vector<std::string>& warnings);
+  void read_tricubic(const JsonReader& json, Case& ray, std::vector<std::string>& warnings);
+  const Grid& read_volume_of(const JsonReader& signal, std::vector<std::string>& warnings);
 
   std::vector<std::filesystem::path> folders_;
-  std::vector<std::string> warnings_;
   std::string last_volume_;  ///< which one it is; empty: none
   Grid grid_;
 };

@@ -1,12 +1,15 @@
 #include "study/case.hpp"
 #include "study/commands.hpp"
 #include "study/output.hpp"
+#include "study/slab_case.hpp"
 #include "volume/find_volume.hpp"
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <nlohmann/json.hpp>
+
+#include <variant>
 
 namespace raytruth {
 
@@ -16,16 +19,20 @@ int evaluate_cases(const EvalOptions& options) {
 
   const JsonReader document = JsonReader::from_file(options.file);
   CaseReader reader(volume_folders(options.data));
-  std::vector<Case> cases;
+  std::vector<std::string> warnings;
+  std::vector<std::variant<Case, SlabCase>> cases;
   for (const JsonReader& item : document.is_array() ? document.items() : std::vector{document})
-    cases.push_back(reader.read(item));
-  for (const std::string& warning : reader.warnings()) say(warning);
+    if (is_slab_case(item))
+      cases.emplace_back(read_slab_case(item, warnings));
+    else
+      cases.emplace_back(reader.read(item, warnings));
+  for (const std::string& warning : warnings) say(warning);
 
   std::vector<nlohmann::ordered_json> answers(cases.size());
   std::vector<std::string> errors(cases.size());
   tbb::parallel_for(std::size_t{0}, cases.size(), [&](std::size_t i) {
     try {
-      answers[i] = evaluate(cases[i]);
+      answers[i] = std::visit([](const auto& asked) { return evaluate(asked); }, cases[i]);
     } catch (const InputError& error) {
       errors[i] = error.what();
     }

@@ -1,4 +1,5 @@
 #include "catalogue.hpp"
+#include "shading/slab_shading.hpp"
 #include "study/commands.hpp"
 #include "study/experiment_folder.hpp"
 #include "study/measure.hpp"
@@ -55,8 +56,10 @@ Json list_of(const std::string& kind) {
   if (kind == "samplings") return entries_json(catalogue::samplings);
   if (kind == "schemes") return schemes_json();
   if (kind == "measures") return entries_json(measures);
+  if (kind == "shadings") return entries_json(catalogue::shadings());
+  if (kind == "tables") return entries_json(catalogue::table_builders());
   if (kind == "experiments") return experiments_json();
-  return Json::array();  // shadings and tables come later
+  return Json::array();
 }
 
 std::string text_of(const std::string& kind) {

@@ -28,6 +28,32 @@ struct EvalOptions {
 };
 int evaluate_cases(const EvalOptions& options);
 
+struct TableOptions {
+  std::string table_case;
+  std::string file;
+  int threads = 0;
+};
+int write_table(const TableOptions& options);
+
+struct RenderOptions {
+  std::string scene;
+  std::string file;  ///< of the image
+  int threads = 0;
+  bool is_linear = false;              ///< 8 bits are linear light, not sRGB
+  std::optional<std::string> opacity;  ///< a transfer function's file, whose opacities are taken
+  bool ignores_gradient_opacity = false;
+  std::string data;
+};
+int render_scene(const RenderOptions& options);
+
+struct CompareOptions {
+  std::string reference;
+  std::string image;
+  std::string difference;  ///< file; empty: none
+  double gain = 1;         ///< of the differences in it
+};
+int compare_images(const CompareOptions& options);
+
 struct ListOptions {
   std::string kind;  ///< empty: all
   bool json = false;

@@ -175,8 +175,15 @@ void check_range(const JsonReader& json) {
 
 void check_panel(const JsonReader& json, const RowNames& names) {
   const std::vector<std::string_view> columns(names.columns.begin(), names.columns.end());
-  const std::string kind = json.at("kind").word({"quantiles", "points", "lines"});
+  const std::string kind = json.at("kind").word({"quantiles", "points", "lines", "image"});
   read_selector(json.at("rows"), names);
+  if (kind == "image") {
+    json.only({"kind", "rows", "line", "pixels", "is_color", "label"});
+    for (const char* const column : {"line", "pixels"}) json.at(column).word(columns);
+    if (const auto is_color = json.find("is_color")) is_color->boolean();
+    json.at("label").text();
+    return;
+  }
   json.at("series").word(columns);
   if (kind == "lines") {
     json.only({"kind", "rows", "x", "y", "series", "front", "label_x", "label_y", "log_x", "log_y", "x_range",

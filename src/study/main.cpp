@@ -32,6 +32,9 @@ class CommandLine {
     add_run();
     add_list();
     add_eval();
+    add_render();
+    add_compare();
+    add_table();
     add_plot();
     add_diff();
     add_info();
@@ -126,6 +129,58 @@ class CommandLine {
     add_data(command, eval_.data);
   }
 
+  void add_table() {
+    auto& command = *add_command("table", "Make a pre-integration table for a renderer, and measure its error",
+                                 "raytruth table table.json -o table.npy", table_, write_table);
+    command.add_option("case", table_.table_case, "JSON file; '-' is standard input")->required();
+    command.add_option("-o", table_.file, "Write this file, .npy or .nrrd, and FILE.json beside it, with its error")
+        ->type_name("FILE")
+        ->required();
+    add_threads(command, table_.threads);
+    command.footer(fmt::format(
+        "A case:\n"
+        "  {{\"transfer_function\": {{\"points\": [{{\"s\": 0, \"extinction\": 0, \"color\": [0, 0, 0]}},\n"
+        "                                    {{\"s\": 255, \"extinction\": 2, \"color\": [1, 0.5, 0.2]}}]}},\n"
+        "   \"builder\": \"exact\", \"size\": 256, \"length\": 1, \"range\": [0, 255], \"format\": \"float32\"}}\n\n"
+        "`raytruth list tables` tells the builders; beside them there are, for slabs whose scalar is a parabola,\n"
+        "second_order_iterations (with \"iterations\"), second_order_nyquist and second_order_exact, and psi of\n"
+        "Moreland and Angel, partial_pre_integration, of \"builder\", \"size\" and \"format\" alone.\n\n{}",
+        command.get_footer()));
+  }
+
+  void add_render() {
+    auto& command = *add_command("render", "Render a scene, by any scheme or certified",
+                                 "raytruth render scene.json -o image.png", render_, render_scene);
+    command.add_option("scene", render_.scene, "JSON file; '-' is standard input")->required();
+    command
+        .add_option("-o", render_.file, "The image: .png (8 bits, over black), .pfm or .npy (linear light, binary32)")
+        ->type_name("FILE")
+        ->required();
+    add_threads(command, render_.threads);
+    command.add_flag("--linear", render_.is_linear, "Write linear light into a .png, instead of sRGB");
+    command
+        .add_option("--opacity", render_.opacity,
+                    "Take the opacities of this transfer function, for colour maps without")
+        ->type_name("FILE");
+    command.add_flag("--ignore-gradient-opacity", render_.ignores_gradient_opacity,
+                     "Accept transfer functions whose opacity depends on the gradient, and leave that out");
+    add_data(command, render_.data);
+  }
+
+  void add_compare() {
+    auto& command = *add_command("compare", "Tell how far an image is from a reference",
+                                 "raytruth compare truth.pfm image.pfm", compare_, compare_images);
+    command.add_option("reference", compare_.reference, ".pfm, .npy or .png (its stored values)")->required();
+    command.add_option("image", compare_.image, "An image of the same size")->required();
+    command.add_option("--difference", compare_.difference, "Write the magnitudes of the differences into this image")
+        ->type_name("FILE");
+    command.add_option("--gain", compare_.gain, "Times this (default: 1)")->type_name("X")->check(CLI::PositiveNumber);
+    command.footer(fmt::format(
+        "Colours are clamped to [0, 1]; PSNR has the peak 1. `danskin_hanrahan` is 100 sum |I - R| / sum R, in\n"
+        "percent; `ssim` that of Wang et al. 2004, windows of 11 x 11.\n\n{}",
+        command.get_footer()));
+  }
+
   void add_plot() {
     auto& command = *add_command("plot", "Draw the plots of results", "raytruth plot results/xi_adaptive.json -o plots",
                                  plot_, plot_results);
@@ -195,6 +250,9 @@ class CommandLine {
   RunOptions run_;
   ListOptions list_;
   EvalOptions eval_;
+  RenderOptions render_;
+  CompareOptions compare_;
+  TableOptions table_;
   PlotOptions plot_;
   DiffOptions diff_;
   InfoOptions info_;

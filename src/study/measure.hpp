@@ -97,6 +97,64 @@ std::vector<Row> volume_texture_precision_rows(const Experiment& experiment, con
 std::vector<Column> gl_renderer_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> gl_renderer_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
+std::vector<Column> table_builds_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> table_builds_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> weighted_tables_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> weighted_tables_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> distance_axis_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> distance_axis_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> eta_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> eta_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> cone_lobe_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> cone_lobe_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> normal_curves_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> normal_curves_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> spheres_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> spheres_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> continuity_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> continuity_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> gradient_angles_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> gradient_angles_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> table_resolution_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> table_resolution_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> table_error_map_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> table_error_map_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> table_formats_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> table_formats_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> second_order_table_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> second_order_table_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> partial_pre_integration_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> partial_pre_integration_rows(const Experiment& experiment, const JsonReader& options,
+                                              const Field& field);
+
+std::vector<Column> table_pareto_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> table_pareto_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> slab_shading_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> slab_shading_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> clamps_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> clamps_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> shading_integrals_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> shading_integrals_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> images_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> images_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
 inline constexpr std::array measures{
     Measure{"signal_error", "xi and xi_max of every scheme along random rays: quantiles, and ratios between schemes",
             true, signal_error_columns, signal_error_rows},
@@ -128,6 +186,30 @@ inline constexpr std::array measures{
             conformance_columns, conformance_rows},
     Measure{"reference_proof", "the certified reference against Arb: not one violation of a radius", false,
             reference_proof_columns, nullptr, reference_proof_blocks, reference_proof_rows},
+    Measure{"table_builds", "composites and exponentials of table builders, and their differences to exact tables",
+            false, table_builds_columns, table_builds_rows},
+    Measure{"weighted_tables", "digits that weighted tables lose, as the printed difference and as sums", false,
+            weighted_tables_columns, weighted_tables_rows},
+    Measure{"distance_axis", "errors of tables for distances 2^j: the interpolation's and the algorithm's", false,
+            distance_axis_columns, distance_axis_rows},
+    Measure{"eta", "the length and the direction of the normal between two samples, by ways to normalise it", false,
+            eta_columns, eta_rows},
+    Measure{"cone_lobe", "highlights that stand for the lobe: deviation, energy, threshold", false, cone_lobe_columns,
+            cone_lobe_rows},
+    Measure{"normal_curves", "curves between two normals, point by point, and what light makes of them", false,
+            normal_curves_columns, normal_curves_rows},
+    Measure{"spheres", "pictures of a smooth and a bumpy sphere by several highlights, and their errors", false,
+            spheres_columns, spheres_rows},
+    Measure{"continuity", "jumps of the light across the borders of slabs and of the cases of their shading", false,
+            continuity_columns, continuity_rows},
+    Measure{"gradient_angles", "angles between the normals of consecutive samples, by ways to take gradients", true,
+            gradient_angles_columns, gradient_angles_rows},
+    Measure{"slab_shading", "errors of the light along a slab, by methods, angles and places of the light", false,
+            slab_shading_columns, slab_shading_rows},
+    Measure{"clamps", "the worst that treatments of negative cosines make of a slab, found by search", false,
+            clamps_columns, clamps_rows},
+    Measure{"shading_integrals", "errors of the colour of whole slabs, and the share of slabs a method is best on",
+            false, shading_integrals_columns, shading_integrals_rows},
     with_gl({"gl_functions", "local functions in GLSL, binary32, binary64 and 50 digits, each against the next", false,
              gl_functions_columns, gl_functions_rows}),
     with_gl({"gl_rays", "errors of rays in a shader: of the method, and of each arithmetic down to GLSL", true,
@@ -138,6 +220,20 @@ inline constexpr std::array measures{
              volume_texture_precision_columns, volume_texture_precision_rows}),
     with_gl({"gl_renderer", "images of a hand-written renderer in GLSL, of the CPU, and certified ones", true,
              gl_renderer_columns, gl_renderer_rows}),
+    Measure{"table_resolution", "errors of look-ups in exact tables against their size, and their orders", false,
+            table_resolution_columns, table_resolution_rows},
+    Measure{"table_error_map", "where on an exact table look-ups err", false, table_error_map_columns,
+            table_error_map_rows},
+    Measure{"table_formats", "errors of look-ups by the format of the table and the weights of the texture unit", false,
+            table_formats_columns, table_formats_rows},
+    Measure{"second_order_table", "errors of tables of second order by iterations and size, and what they cost", false,
+            second_order_table_columns, second_order_table_rows},
+    Measure{"partial_pre_integration", "errors of Moreland's partial pre-integration by the size of its table", false,
+            partial_pre_integration_columns, partial_pre_integration_rows},
+    Measure{"table_pareto", "the smallest table that reaches an accuracy, of all builders, sizes and formats", false,
+            table_pareto_columns, table_pareto_rows},
+    Measure{"images", "views of volumes in many ways, against the certified image and each other", true, images_columns,
+            images_rows},
 };
 
 /// The measure that an item of an experiment's "measures" names. Throws InputError.

@@ -5,29 +5,21 @@
 #include "render/pixels.hpp"
 #include "render/textured_march.hpp"
 #include "schemes/scheme_integral.hpp"
+#include "study/grid_view.hpp"
 #include "study/measure.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace raytruth {
 
 namespace {
 
-constexpr std::int64_t largest_side = 4096;
 constexpr std::int64_t most_entries = 4096;
 constexpr std::int64_t most_weight_bits = 16;
-constexpr double most_diagonals = 1000;
 constexpr double largest_extinction = 1e6;
-
-/// A camera for grids of any size: lengths are in units of the grid's diagonal, places relative to its middle.
-struct View {
-  std::string kind;
-  Camera camera;  ///< `eye` from the middle of the grid, `height` in diagonals
-};
 
 struct Options {
   std::vector<std::string> shapes;
@@ -35,38 +27,8 @@ struct Options {
   std::int64_t entries = 0;
   double step = 0;
   int weight_bits = 0;
-  std::vector<View> views;
+  std::vector<GridView> views;
 };
-
-std::array<double, 3> read_point(const JsonReader& json) {
-  const auto items = json.items(3);
-  if (items.size() != 3) json.refuse_value("three numbers");
-  const auto coordinate = [&items](std::size_t axis) { return items[axis].number(-most_diagonals, most_diagonals); };
-  return {coordinate(0), coordinate(1), coordinate(2)};
-}
-
-double read_height(const JsonReader& json) {
-  json.positive_number();
-  return json.number(0, most_diagonals);
-}
-
-View read_view(const JsonReader& json, const std::array<std::int64_t, 2>& size) {
-  View view{.kind = json.at("kind").word({"orthographic", "perspective"}),
-            .camera = {.eye = read_point(json.at("from")),
-                       .target = {},
-                       .up = read_point(json.at("up")),
-                       .projection = {},
-                       .size = size}};
-  if (view.kind == "orthographic") {
-    json.only({"kind", "from", "up", "height"});
-    view.camera.projection = Orthographic{read_height(json.at("height"))};
-  } else {
-    json.only({"kind", "from", "up", "fov_y"});
-    view.camera.projection = Perspective{json.at("fov_y").positive_number()};
-  }
-  json.blame_for([&view] { return CameraView(view.camera, {1, 1, 1}); });
-  return view;
-}
 
 Options read_options(const JsonReader& json) {
   json.only({"kind", "shapes", "extinction", "entries", "step", "weight_bits", "size", "views"});
@@ -80,26 +42,9 @@ Options read_options(const JsonReader& json) {
                   .weight_bits = static_cast<int>(json.at("weight_bits").integer(1, most_weight_bits)),
                   .views = {}};
   for (const JsonReader& shape : json.at("shapes").items()) options.shapes.push_back(shape.word(shapes));
-  const auto sides = json.at("size").items(2);
-  if (sides.size() != 2) json.at("size").refuse_value("width and height");
-  const std::array size{sides[0].integer(1, largest_side), sides[1].integer(1, largest_side)};
-  for (const JsonReader& view : json.at("views").items()) options.views.push_back(read_view(view, size));
+  const auto size = read_image_size(json.at("size"));
+  for (const JsonReader& view : json.at("views").items()) options.views.push_back(read_grid_view(view, size));
   return options;
-}
-
-/// The view of a grid.
-Camera aimed(const View& view, const Grid& grid) {
-  Camera camera = view.camera;
-  double diagonal = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double extent = grid.spacing[axis] * static_cast<double>(grid.size[axis]);
-    camera.target[axis] = (extent - grid.spacing[axis]) / 2;
-    diagonal = std::hypot(diagonal, extent);
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    camera.eye[axis] = camera.target[axis] + diagonal * view.camera.eye[axis];
-  if (auto* parallel = std::get_if<Orthographic>(&camera.projection)) parallel->height *= diagonal;
-  return camera;
 }
 
 // What the scene's textures hold, numbers rounded to binary32, so that everybody draws the same.
@@ -260,7 +205,7 @@ std::vector<Row> gl_renderer_rows(const Experiment& experiment, const JsonReader
     TexturedScene scene = textured_scene(field.grid, entry.make(asked.extinction, experiment.seed), asked.entries);
     scene.step = asked.step;
     const Grid grid = drawn_grid(field.grid, scene);
-    for (const View& view : asked.views) {
+    for (const GridView& view : asked.views) {
       scene.camera = aimed(view, grid);
       const Images images = draw(scene, grid, asked.weight_bits, *device);
       for (const auto& [image_name, image, reference_name, reference] : comparisons) {

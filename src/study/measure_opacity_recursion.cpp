@@ -40,16 +40,11 @@ Real by_recursion(Real opacity, std::int64_t parts) {
   return opacity;
 }
 
-Real50 power(const Real50& x, const Real50& y) { return pow(x, y); }
-double power(double x, double y) { return std::pow(x, y); }
-Binary32 power(Binary32 x, Binary32 y) {
-  return static_cast<double>(std::pow(static_cast<float>(to_double(x)), static_cast<float>(to_double(y))));
-}
-
 /// Lee 2010, eq. 9 as printed, 1 - (1 - alpha)^(1/n).
 template <class Real>
 Real by_power(Real opacity, std::int64_t parts) {
-  return Real(1) - power(Real(1) - opacity, Real(1 / static_cast<double>(parts)));
+  using std::pow;
+  return Real(1) - pow(Real(1) - opacity, Real(1 / static_cast<double>(parts)));
 }
 
 /// The same without the difference of nearly equal numbers; a whole is 1/n times as many parts.

@@ -104,6 +104,8 @@ def show_legend(axes, handles):
 def share_legend(figure, all_axes, width):
     """One legend for the figure where all panels have the same: its handles and number of columns, else none."""
     legends = [axes.get_legend() for axes in all_axes]
+    if None in legends:
+        return None, 0
     keys = [[(line.get_label(), line.get_color(), line.get_marker()) for line in legend.get_lines()] for legend in legends]
     if len(legends) == 1 or any(key != keys[0] for key in keys):
         return None, 0
@@ -243,7 +245,22 @@ def draw_lines(axes, result, panel):
     return 2.4, None
 
 
-PANELS = {"quantiles": draw_quantiles, "points": draw_points, "lines": draw_lines}
+def draw_image(axes, result, panel):
+    """A picture: a row of the result for each of its lines, 8-bit grays or colours in hexadecimal."""
+    lines = [row for row in select(result["rows"], panel["rows"]) if row.get(panel["line"]) is not None]
+    lines.sort(key=lambda row: row[panel["line"]])
+    pixels = [list(bytes.fromhex(row[panel["pixels"]])) for row in lines]
+    if panel.get("is_color"):
+        pixels = [[line[i : i + 3] for i in range(0, len(line), 3)] for line in pixels]
+    axes.imshow(pixels, cmap="gray", vmin=0, vmax=255, interpolation="none")
+    axes.set_xticks([])
+    axes.set_yticks([])
+    axes.spines[:].set_visible(False)
+    axes.set_xlabel(panel["label"])
+    return 2.4, None
+
+
+PANELS = {"quantiles": draw_quantiles, "points": draw_points, "lines": draw_lines, "image": draw_image}
 
 
 def refused_rows(result):

@@ -11,6 +11,31 @@
 
 namespace raytruth {
 
+Grid read_inline_grid(const JsonReader& json, bool has_spacing) {
+  if (has_spacing)
+    json.only({"size", "values", "spacing"});
+  else
+    json.only({"size", "values"});
+  const auto sizes = json.at("size").items();
+  if (sizes.size() != 3) json.at("size").refuse_value("a list of 3 sizes");
+  Grid grid;
+  std::int64_t voxels = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    grid.size[axis] = sizes[axis].integer(1, most_voxels);
+    if (grid.size[axis] > most_voxels / voxels) json.at("size").refuse("more voxels than 2^33", "fewer");
+    voxels *= grid.size[axis];
+  }
+  grid.values = json.at("values").numbers();
+  if (grid.values.size() != static_cast<std::size_t>(voxels))
+    json.at("values").refuse_value(fmt::format("a list of {} numbers, as size says,", voxels));
+  if (const auto spacing = json.find("spacing")) {
+    const auto lengths = spacing->items();
+    if (lengths.size() != 3) spacing->refuse_value("a list of 3 numbers > 0");
+    for (std::size_t axis = 0; axis < 3; ++axis) grid.spacing[axis] = lengths[axis].positive_number();
+  }
+  return grid;
+}
+
 std::filesystem::path find_sourced_volume(const JsonReader& owner, const std::vector<std::filesystem::path>& folders) {
   const JsonReader place = owner.at("volume");
   const std::string name = place.text();

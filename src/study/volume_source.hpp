@@ -24,6 +24,10 @@ struct SourcedVolume {
 /// Throws VolumeAbsent where there is no such file, InputError with the place in the document for everything else.
 SourcedVolume read_sourced_volume(const JsonReader& owner, const std::vector<std::filesystem::path>& folders);
 
+/// The voxels that stand in a document: {"size": [nx, ny, nz], "values": [...]}, x fastest, and "spacing" if
+/// `has_spacing`. Throws InputError.
+Grid read_inline_grid(const JsonReader& json, bool has_spacing = false);
+
 /// The file of that volume. Throws VolumeAbsent.
 std::filesystem::path find_sourced_volume(const JsonReader& owner, const std::vector<std::filesystem::path>& folders);
 

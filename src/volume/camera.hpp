@@ -25,7 +25,7 @@ struct Camera {
   std::array<double, 3> eye{};
   std::array<double, 3> target{};
   std::array<double, 3> up{};
-  std::variant<Orthographic, Perspective> projection;
+  std::variant<Orthographic, Perspective> projection = {};
   std::array<std::int64_t, 2> size{};  ///< width and height in pixels
 };
 

@@ -42,6 +42,24 @@ VOLUME_RAY = {
     "schemes": ["order0_left", "order0_right", "order0_mid", "order1", "order2"],
 }
 
+# The slab example of the program's interface.
+SLAB = {
+    "slab": {"front": 0.2, "back": 0.7, "length": 1.0, "front_normal": [0, 0, 1], "back_normal": [0, 1, 0]},
+    "transfer_function": RAY["transfer_function"],
+    "emission": "plain",
+    "lighting": {
+        "light": [0, 0.6, 0.8],
+        "half": [0, 0, 1],
+        "ambient": 0.1,
+        "diffuse": 1,
+        "specular": 0.5,
+        "shininess": 20,
+        "highlight": "lobe",
+        "negative": "clamp",
+    },
+    "schemes": ["reference", "mean_gradient", "linear_gradient", "quadratic_arc"],
+}
+
 EXPERIMENT = {
     "raytruth": "experiment/1",
     "name": "small",

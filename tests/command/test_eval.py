@@ -5,7 +5,7 @@ import math
 import unittest
 
 import exact_integral
-from support import RAY, VOLUME_RAY, ProgramTest, changed
+from support import RAY, SLAB, VOLUME_RAY, ProgramTest, changed
 
 EMISSIONS = ("associated", "plain")
 
@@ -248,6 +248,77 @@ class Budget(ProgramTest):
         self.assertAlmostEqual(schemes["order1"]["opacity_error"], 0, places=15)
 
 
+class Slabs(ProgramTest):
+    """Shaded slabs against closed forms."""
+
+    TERMS = ("ambient", "diffuse", "specular")
+
+    def test_slab_of_the_interface(self):
+        answer = self.json_of("eval", "-", stdin=SLAB)
+        reference = answer["reference"]
+        self.assertEqual(list(reference), [*self.TERMS, "opacity", "error_bound"])
+        self.assertLess(reference["error_bound"], 1e-14)
+        self.assertEqual(list(answer["schemes"]), SLAB["schemes"][1:])
+        self.assertAlmostEqual(reference["opacity"], -math.expm1(-8 * 0.45), places=14)
+        for scheme in answer["schemes"].values():
+            self.assertEqual(list(scheme), [*self.TERMS, "opacity", *(f"{term}_error" for term in (*self.TERMS, "opacity"))])
+            for term in self.TERMS:
+                for found, error, truth in zip(scheme[term], scheme[f"{term}_error"], reference[term]):
+                    self.assertAlmostEqual(found - error, truth, places=15)
+            # What lights no normal is the same for all.
+            self.assertAlmostEqual(max(map(abs, scheme["ambient_error"])), 0, places=14)
+        # The chord is shorter than the circle, the arc longer.
+        errors = [answer["schemes"][name]["diffuse_error"][0] for name in ("linear_gradient", "quadratic_arc")]
+        self.assertLess(errors[0], -1e-3)
+        self.assertGreater(errors[1], 1e-4)
+
+    def test_homogeneous_slab_between_normals_at_right_angles(self):
+        # N.L = (1 - x) / sqrt((1-x)^2 + x^2), whose integral is asinh(1) / sqrt 2; its chord's is 1/2, the mean's
+        # 1 / sqrt 2. Nothing absorbs.
+        points = [{"s": 0, "extinction": 0, "color": [1, 0.5, 0.25]}]
+        case = {**SLAB, "transfer_function": {"points": points}, "lighting": {**SLAB["lighting"], "light": [0, 0, 1]}}
+        answer = self.json_of("eval", "-", stdin=case)
+        for term, light in (("ambient", 0.1), ("diffuse", math.asinh(1) / math.sqrt(2))):
+            for found, color in zip(answer["reference"][term], points[0]["color"]):
+                self.assertLessEqual(abs(found - color * light), answer["reference"]["error_bound"] + 2e-16)
+        self.assertEqual(len(set(answer["reference"]["specular"])), 1)  # white
+        self.assertAlmostEqual(answer["schemes"]["linear_gradient"]["diffuse"][1], 0.25, places=15)
+        self.assertAlmostEqual(answer["schemes"]["mean_gradient"]["diffuse"][2], 0.25 / math.sqrt(2), places=15)
+
+    def test_every_shading_and_highlight_answers(self):
+        names = [entry["name"] for entry in self.json_of("list", "shadings", "--json")]
+        for highlight in ("lobe", "cone"):
+            for emission in EMISSIONS:
+                case = {**SLAB, "emission": emission, "lighting": {**SLAB["lighting"], "highlight": highlight}, "schemes": names}
+                answer = self.json_of("eval", "-", stdin=case)
+                self.assertEqual(list(answer["schemes"]), names)
+                refused = {name for name, scheme in answer["schemes"].items() if "status" in scheme}
+                # The fades are made for cones, the gradient of the extinction for lobes.
+                fades = {name for name in names if "fades" in name}
+                self.assertEqual(refused, fades if highlight == "lobe" else {"opacity_gradient"})
+                errors = answer["schemes"]["normalized_linear"]
+                for term in self.TERMS:
+                    self.assertLess(max(map(abs, errors[f"{term}_error"])), 1e-13)
+
+    def test_powers_of_falling_opacity_are_not_numbers(self):
+        falling = changed(SLAB, "/transfer_function/points/0/extinction", 9)
+        case = changed(changed(falling, "/lighting/shininess", 10.5), "/schemes", ["opacity_gradient"])
+        scheme = self.json_of("eval", "-", stdin=case)["schemes"]["opacity_gradient"]
+        self.assertEqual(scheme["status"], "refused")
+        self.assertIn("not a number", scheme["why"])
+        whole = self.json_of("eval", "-", stdin=changed(case, "/lighting/shininess", 3))["schemes"]["opacity_gradient"]
+        self.assertLess(max(whole["diffuse"]), 0)
+
+    def test_no_length_no_light(self):
+        answer = self.json_of("eval", "-", stdin=changed(SLAB, "/slab/length", 0))
+        self.assertEqual(answer["reference"]["error_bound"], 0)
+        self.assertEqual(answer["schemes"]["mean_gradient"]["diffuse"], [0, 0, 0])
+
+    def test_rays_and_slabs_in_one_list(self):
+        both = self.json_of("eval", "-", stdin=[RAY, SLAB])
+        self.assertEqual(both, [self.json_of("eval", "-", stdin=case) for case in (RAY, SLAB)])
+
+
 class Refusals(ProgramTest):
     """(document, JSON pointer named, words of the message)"""
 
@@ -308,6 +379,22 @@ class Refusals(ProgramTest):
         (changed(VOLUME_RAY, "/signal/volume", "nowhere"), "/signal/volume", "nowhere"),
         (changed(VOLUME_RAY, "/signal/volume", "./nowhere.nrrd"), "/signal/volume", "nowhere.nrrd"),
         (changed(VOLUME_RAY, "/signal/repair", "first_byte"), "/signal/repair", "file"),
+        (changed(SLAB, "/slab/back_normal", [0, 0, -1]), "/slab/back_normal", "antiparallel"),
+        (changed(SLAB, "/slab/front_normal", [0, 0, 1.00001]), "/slab/front_normal", "1e-6"),
+        (changed(SLAB, "/slab/front_normal", [0, 0]), "/slab/front_normal", "3 numbers"),
+        (changed(SLAB, "/slab/length", -1), "/slab/length", "found -1"),
+        (changed(SLAB, "/slab/depth", 1), "/slab/depth", "unknown key"),
+        (changed(SLAB, "/lighting/light", [0, 0, 0]), "/lighting/light", "length 0"),
+        (changed(SLAB, "/lighting/half/0", "x"), "/lighting/half/0", "a number"),
+        (changed(SLAB, "/lighting/diffuse", -1), "/lighting/diffuse", "found -1"),
+        (changed(SLAB, "/lighting/shininess", 0.5), "/lighting/shininess", "found 0.5"),
+        (changed(SLAB, "/lighting/highlight", "phong"), "/lighting/highlight", "lobe"),
+        (changed(SLAB, "/lighting/negative", "fade"), "/lighting/negative", "mirror"),
+        (changed(SLAB, "/lighting", {**SLAB["lighting"], "negative": "none", "shininess": 2.5}), "/lighting/shininess", "whole"),
+        (changed(SLAB, "/lighting/half", ...), "/lighting/half", "found nothing"),
+        (changed(SLAB, "/schemes/1", "order1"), "/schemes/1", "quadratic_arc"),
+        (changed(SLAB, "/transfer_function", ...), "/transfer_function", "found nothing"),
+        (changed(SLAB, "/sampling", {"kind": "cells"}), "/sampling", "unknown key"),
         ([RAY, changed(RAY, "/sampling/step", 0)], "/1/sampling/step", "found 0"),
         ([], "/", "list"),
         (5, "/", "an object"),

@@ -6,7 +6,7 @@ import unittest
 
 from support import EXPERIMENT, PROGRAM, RAY, ProgramTest, changed
 
-COMMANDS = ["run", "list", "eval", "plot", "diff", "info", "vectors", "score"]
+COMMANDS = ["run", "list", "eval", "render", "compare", "plot", "diff", "info", "vectors", "score"]
 HEADER = b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 3 4\nencoding: raw\nspacings: 1 1 2\n\n"
 
 
@@ -39,7 +39,8 @@ class Lists(ProgramTest):
                 self.assertTrue(entry["summary"])
 
     def test_kinds_without_entries_say_so(self):
-        self.assertEqual(self.output_of("list", "tables"), "tables: none\n")
+        (self.folder / "experiments").mkdir()
+        self.assertEqual(self.output_of("list", "experiments"), "experiments: none\n")
 
     def test_experiments_of_the_current_folder(self):
         (self.folder / "experiments").mkdir()

@@ -7,10 +7,11 @@ import unittest
 import jsonschema
 
 import test_eval
+import test_render
 import test_run
-from support import EXPERIMENT, RAY, SOURCE, STUDY, VOLUME_RAY, ProgramTest, changed
+from support import EXPERIMENT, RAY, SLAB, SOURCE, STUDY, VOLUME_RAY, ProgramTest, changed
 
-SCHEMAS = {name: json.loads((SOURCE / f"experiments/schemas/{name}.json").read_text()) for name in ("experiment", "case", "result", "vectors")}
+SCHEMAS = {name: json.loads((SOURCE / f"experiments/schemas/{name}.json").read_text()) for name in ("experiment", "case", "result", "scene", "table", "vectors")}
 STORE = {schema["$id"]: schema for schema in SCHEMAS.values()}
 
 
@@ -50,6 +51,7 @@ BEYOND_CASE_SCHEMA = re.compile(
     | /transfer_function\ =\ "word"
     | /transfer_function/points/./(s|extinction|color/.)\ =\ 1e\+300
     | /transfer_function/points/1/s\ =\ -1
+    | /(slab/(front|back)_normal|lighting/(light|half))/\d\ =\ (-1|1e\+300)  # no unit vector
     """,
     re.VERBOSE,
 )
@@ -71,10 +73,24 @@ BEYOND_EXPERIMENT_SCHEMA = re.compile(
     re.VERBOSE,
 )
 
+BEYOND_SCENE_SCHEMA = re.compile(
+    r"""
+      /volume\ =\ "word"
+    | /transfer_function\ =\ "word"
+    | /transfer_function/points/./(s|extinction|color/.)\ =\ 1e\+300
+    | /transfer_function/points/1/s\ =\ -1
+    | /camera/(eye/.|target/1|up/2|height)\ =\ 1e\+300  # too far, or parallel to up
+    | /table/builder\ =\ "word"
+    | /shading/(method|highlight)\ =\ "word"
+    """,
+    re.VERBOSE,
+)
+
 
 class Agreement(ProgramTest):
     def program_accepts(self, command, document):
-        done = self.run_program(command, self.write("document.json", document))
+        output = ["-o", "image.npy"] if command == "render" else []
+        done = self.run_program(command, self.write("document.json", document), *output)
         self.assertIn(done.returncode, (0, 2), done.stderr)
         return done.returncode == 0
 
@@ -91,10 +107,13 @@ class Agreement(ProgramTest):
     def test_cases(self):
         schema = validator("case")
         opacity = {"points": [{"s": s, "opacity": 0.5, "color": [1, 1, 1]} for s in (0, 1)], "unit_length": 2}
-        for case in (RAY, VOLUME_RAY, [RAY, VOLUME_RAY], changed(RAY, "/transfer_function", opacity)):
+        for case in (RAY, VOLUME_RAY, SLAB, [RAY, VOLUME_RAY, SLAB], changed(RAY, "/transfer_function", opacity)):
             self.assertTrue(schema.is_valid(case))
             self.assertTrue(self.program_accepts("eval", case))
-        for case in (RAY, VOLUME_RAY, changed(RAY, "/transfer_function", opacity)):
+        # Normals and directions that no change of a component leaves as long as they are.
+        tilted = changed(changed(SLAB, "/slab/front_normal", [0, 0.6, 0.8]), "/slab/back_normal", [0.6, 0, 0.8])
+        tilted = changed(changed(tilted, "/lighting/light", [0, 0.6, 0.8]), "/lighting/half", [0.6, 0, 0.8])
+        for case in (RAY, VOLUME_RAY, tilted, changed(RAY, "/transfer_function", opacity)):
             self.assert_agreement("eval", schema, mutations(case), BEYOND_CASE_SCHEMA)
 
     def test_experiments(self):
@@ -105,6 +124,21 @@ class Agreement(ProgramTest):
             self.assertTrue(schema.is_valid(experiment))
             self.assertTrue(self.program_accepts("run", experiment))
             self.assert_agreement("run", schema, mutations(experiment), BEYOND_EXPERIMENT_SCHEMA)
+
+    def test_scenes(self):
+        schema = validator("scene")
+        scene = {**test_render.SCENE, "scheme": "order1", "step": 0.5, "table": {"size": 16, "builder": "exact", "format": "unorm8", "filter": "nearest"},
+                 "early_termination": 0.9, "empty_space": {"block": 4, "bounds": "printed"}, "reconstruction": "catmull_rom", "emission": "plain"}
+        for document in (test_render.SCENE, test_render.NOISE, scene):
+            self.assertTrue(schema.is_valid(document))
+            self.assertTrue(self.program_accepts("render", document))
+        self.assert_agreement("render", schema, mutations(scene), BEYOND_SCENE_SCHEMA)
+        shading = {"method": "quadratic_arc", "light": [0, 0, -1], "ambient": 0.25, "diffuse": 1, "specular": 1, "shininess": 10,
+                   "highlight": "cone", "negative": "mirror", "normal": "gradient"}
+        lit = {**test_render.SCENE, "scheme": "order1", "step": 0.5, "shading": shading}
+        self.assertTrue(self.program_accepts("render", lit))
+        documents = [(f"/shading{what}", {**lit, "shading": part}) for what, part in mutations(shading)]
+        self.assert_agreement("render", schema, documents, BEYOND_SCENE_SCHEMA)
 
     def test_refused_documents_of_the_other_tests(self):
         """Listed by pointer and words: those that only the program can refuse."""
@@ -125,6 +159,9 @@ class Agreement(ProgramTest):
             ("/signal/volume", "nowhere"),
             ("/signal/volume", "nowhere.nrrd"),
             ("/signal/repair", "file"),
+            ("/slab/back_normal", "antiparallel"),
+            ("/slab/front_normal", "1e-6"),
+            ("/lighting/light", "length 0"),
             ("/fields/1/name", "each name once"),
             ("/fields/0/smoothing", "16"),
             ("/measures/0", "constant step"),
@@ -177,6 +214,7 @@ class Validity(ProgramTest):
     def test_names_are_those_of_the_catalogue(self):
         schemes = [entry["name"] for entry in self.json_of("list", "schemes", "--json")]
         self.assertEqual(SCHEMAS["case"]["$defs"]["scheme"]["enum"], schemes)
+        self.assertEqual(SCHEMAS["case"]["$defs"]["shading"]["enum"], [entry["name"] for entry in self.json_of("list", "shadings", "--json")])
         signal_schemes = [entry["name"] for entry in self.json_of("list", "schemes", "--json") if "signal_order" in entry]
         self.assertEqual(SCHEMAS["experiment"]["$defs"]["signal_scheme"]["enum"], signal_schemes)
         for kind, name, place in [("fields", "experiment", "field"), ("measures", "experiment", "measure"), ("transfers", "experiment", "transfer"),

@@ -1,0 +1,234 @@
+#pragma once
+
+#include "kernels/float_lanes.hpp"
+#include "kernels/table_kernels.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+namespace raytruth::inline RAYTRUTH_LEVEL {
+
+/// Slabs side by side: light in three channels, and opacity.
+using LaneSlab = std::array<FloatLanes, 4>;
+
+/// Element I of the result is element Index(I) of a, or of b from float_lane_count on.
+template <class Index, std::size_t... I>
+FloatLanes shuffle(const FloatLanes& a, const FloatLanes& b, Index index, std::index_sequence<I...> /*lanes*/) {
+  return FloatLanes::of(__builtin_shufflevector(a.vector, b.vector, static_cast<int>(index(I))...));
+}
+
+/// Writes the slabs as texels one behind the other, RGBA each. A quarter is 128 bits, which hold a texel; the shuffles
+/// are those that processors have.
+inline void store_texels(const LaneSlab& slab, float* to) {
+  constexpr auto lanes = std::make_index_sequence<float_lane_count>{};
+  // Of every quarter, two numbers of a and of b: a b a b, from its lower half or from its upper one.
+  const auto mix = [&](const FloatLanes& a, const FloatLanes& b, auto half) {
+    return shuffle(
+        a, b,
+        [](std::size_t i) { return i / 4 * 4 + decltype(half)::value * 2 + i % 4 / 2 + i % 2 * float_lane_count; },
+        lanes);
+  };
+  // Of every quarter, the lower (or upper) halves of a and of b.
+  const auto join = [&](const FloatLanes& a, const FloatLanes& b, auto half) {
+    return shuffle(
+        a, b,
+        [](std::size_t i) { return i / 4 * 4 + decltype(half)::value * 2 + i % 2 + i % 4 / 2 * float_lane_count; },
+        lanes);
+  };
+  constexpr std::integral_constant<std::size_t, 0> lower{};
+  constexpr std::integral_constant<std::size_t, 1> upper{};
+  const auto& [r, g, b, a] = slab;
+  const FloatLanes rg_lower = mix(r, g, lower);
+  const FloatLanes rg_upper = mix(r, g, upper);
+  const FloatLanes ba_lower = mix(b, a, lower);
+  const FloatLanes ba_upper = mix(b, a, upper);
+  // Texels k, k + 4, ... in the quarters of the k-th.
+  const std::array texels{join(rg_lower, ba_lower, lower), join(rg_lower, ba_lower, upper),
+                          join(rg_upper, ba_upper, lower), join(rg_upper, ba_upper, upper)};
+  if constexpr (float_lane_count == 4) {
+    for (std::size_t k = 0; k < 4; ++k) texels[k].store(to + 4 * k);
+  } else {
+    // Lower (or upper) halves of a and b; and of both the even (or odd) quarters.
+    const auto halves = [&](const FloatLanes& x, const FloatLanes& y, auto half) {
+      return shuffle(
+          x, y,
+          [](std::size_t i) {
+            constexpr std::size_t width = float_lane_count / 2;
+            return decltype(half)::value * width + i % width + i / width * float_lane_count;
+          },
+          lanes);
+    };
+    if constexpr (float_lane_count == 8) {
+      halves(texels[0], texels[1], lower).store(to);
+      halves(texels[2], texels[3], lower).store(to + 8);
+      halves(texels[0], texels[1], upper).store(to + 16);
+      halves(texels[2], texels[3], upper).store(to + 24);
+    } else {
+      const auto quarters = [&](const FloatLanes& x, const FloatLanes& y, auto odd) {
+        return shuffle(
+            x, y,
+            [](std::size_t i) { return i / 4 % 2 * 8 + decltype(odd)::value * 4 + i % 4 + i / 8 * float_lane_count; },
+            lanes);
+      };
+      const FloatLanes front_01 = halves(texels[0], texels[1], lower);
+      const FloatLanes front_23 = halves(texels[2], texels[3], lower);
+      const FloatLanes back_01 = halves(texels[0], texels[1], upper);
+      const FloatLanes back_23 = halves(texels[2], texels[3], upper);
+      quarters(front_01, front_23, lower).store(to);
+      quarters(front_01, front_23, upper).store(to + 16);
+      quarters(back_01, back_23, lower).store(to + 32);
+      quarters(back_01, back_23, upper).store(to + 48);
+    }
+  }
+}
+
+/// Intervals of the transfer function as the lanes of a band see them.
+struct LaneInterval {
+  FloatLanes t;                     ///< opacity 1 - 2^-t
+  std::array<FloatLanes, 4> color;  ///< what the opacity is multiplied by to give light: RGB and white
+  FloatLanes position;              ///< of its front behind a bin's border, in units of the lane's slabs
+};
+
+/// A band of diagonals: lane l has the width `first_width` + offset(l), so that the entries of a row, all of one back,
+/// lie side by side in the order of the lanes. Intervals are counted in the order of crossing; backwards that is from
+/// the last one down, and entry j in this order is entry count - j of the table.
+///
+/// Algebra is what slabs are made of: a State, an array of FloatLanes that begins with zeros; put_in_front(state,
+/// interval), put_behind(state, interval); texels(before, behind, distance, write), which joins the parts before and
+/// behind a border, the first of which begins at that distance from it, and gives a LaneSlab to write(k, slab) for
+/// table k.
+template <class Algebra, bool IsBackwards>
+class Band {
+ public:
+  Band(const TableIntervals& intervals, std::size_t first_width)
+      : intervals_(intervals), first_width_(static_cast<std::ptrdiff_t>(first_width)) {
+    std::array<float, float_lane_count> shares{};
+    std::array<float, float_lane_count> offsets{};
+    for (std::size_t lane = 0; lane < float_lane_count; ++lane) {
+      offsets[lane] = static_cast<float>(offset(lane));
+      shares[lane] = 1.0F / static_cast<float>(first_width + offset(lane));
+    }
+    shares_ = FloatLanes::load(shares.data());
+    offsets_ = FloatLanes::load(offsets.data());
+  }
+
+  /// By subranges whose bins, of `first_width` intervals, all lanes share. The ranges that end in the row of entry j
+  /// begin in lane l at j - first_width - offset(l); so the scan of the parts before a bin's border is skewed by the
+  /// lanes, that of the parts behind it is not.
+  void run(float* buffer, float* const* tables) const {
+    using State = typename Algebra::State;
+    constexpr auto floats = static_cast<std::ptrdiff_t>(std::tuple_size_v<State> * float_lane_count);
+    const Algebra algebra(shares_);
+    const auto count = static_cast<std::ptrdiff_t>(intervals_.count);
+    const std::ptrdiff_t bin = first_width_;
+    for (std::ptrdiff_t border = bin - 1; border < count; border += bin) {
+      // Step x holds the parts from x - offset(l) to the border, used in row x + bin.
+      const std::ptrdiff_t last_used = border < count - bin ? border : count - bin;
+      State before{};
+      for (std::ptrdiff_t x = border + lanes - 1; x > border - bin; --x) {
+        algebra.put_in_front(before, skewed_interval(x, border));
+        if (x <= last_used) store(before, buffer + (x - (border - bin)) * floats);
+      }
+      State behind{};
+      for (std::ptrdiff_t back = border + 1; back <= last_used + bin; ++back) {
+        algebra.put_behind(behind, interval(back - 1, border));
+        algebra.texels(load<State>(buffer + (back - border) * floats), behind,
+                       (FloatLanes(static_cast<float>(border + bin - back)) + offsets_) * shares_,
+                       [&](std::size_t k, const LaneSlab& slab) { write(slab, back, tables[k]); });
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t texel_floats = 4 * float_lane_count;
+  static constexpr std::ptrdiff_t rows_ahead = 24;
+  static constexpr std::size_t floats_of_line = 16;
+  static constexpr auto lanes = static_cast<std::ptrdiff_t>(float_lane_count);
+
+  static constexpr std::size_t offset(std::size_t lane) { return IsBackwards ? lane : float_lane_count - 1 - lane; }
+
+  // Register by register: GCC keeps in memory what is copied as a whole.
+  template <class State>
+  static void store(const State& state, float* to) {
+    for (std::size_t i = 0; i < state.size(); ++i) state[i].store(to + i * float_lane_count);
+  }
+  template <class State>
+  static State load(const float* from) {
+    State state;
+    for (std::size_t i = 0; i < state.size(); ++i) state[i] = FloatLanes::load(from + i * float_lane_count);
+    return state;
+  }
+
+  /// Interval x - offset(l) in lane l; nothing behind the border.
+  [[nodiscard]] LaneInterval skewed_interval(std::ptrdiff_t x, std::ptrdiff_t border) const {
+    const std::ptrdiff_t first = IsBackwards ? static_cast<std::ptrdiff_t>(intervals_.count) - 1 - x : x - (lanes - 1);
+    FloatLanes rate = FloatLanes::load(intervals_.rate + first);
+    if (x >= border) {
+      const auto behind = static_cast<std::int32_t>(x - border);
+      rate = IsBackwards ? last_lanes(behind + 1, rate) : first_lanes(lanes - 1 - behind, rate);
+    }
+    LaneInterval result;
+    result.t = rate * (FloatLanes(intervals_.length) * shares_);
+    for (std::size_t c = 0; c < 4; ++c) result.color[c] = FloatLanes::load(intervals_.color[c] + first);
+    result.position = (FloatLanes(static_cast<float>(x - border)) - offsets_) * shares_;
+    return result;
+  }
+
+  /// Interval k, the same in all lanes.
+  [[nodiscard]] LaneInterval interval(std::ptrdiff_t k, std::ptrdiff_t border) const {
+    const std::ptrdiff_t index = IsBackwards ? static_cast<std::ptrdiff_t>(intervals_.count) - 1 - k : k;
+    LaneInterval result;
+    result.t = FloatLanes(intervals_.rate[index]) * (FloatLanes(intervals_.length) * shares_);
+    for (std::size_t c = 0; c < 4; ++c) result.color[c] = FloatLanes(intervals_.color[c][index]);
+    result.position = FloatLanes(static_cast<float>(k - border)) * shares_;
+    return result;
+  }
+
+  /// Lanes whose front lies outside the table are left out.
+  void write(const LaneSlab& slab, std::ptrdiff_t back, float* table) const {
+    const auto count = static_cast<std::ptrdiff_t>(intervals_.count);
+    const std::ptrdiff_t nearest = back - first_width_;  // front of offset 0
+    const std::ptrdiff_t row = IsBackwards ? count - back : back;
+    const std::ptrdiff_t column = IsBackwards ? count - nearest : nearest - (lanes - 1);
+    float* const to = table + (row * (count + 1) + column) * 4;
+    // Rows are too far apart for the processor to guess the next one.
+    const float* const later = to + (IsBackwards ? -rows_ahead : rows_ahead) * (count + 2) * 4;
+    for (std::size_t line = 0; line <= texel_floats; line += floats_of_line) __builtin_prefetch(later + line, 1);
+    if (nearest >= lanes - 1) {
+      store_texels(slab, to);
+    } else {
+      alignas(64) std::array<float, texel_floats> texels;
+      store_texels(slab, texels.data());
+      const std::ptrdiff_t inside = nearest + 1;
+      const std::ptrdiff_t first = IsBackwards ? 0 : lanes - inside;
+      std::memcpy(to + 4 * first, texels.data() + 4 * first, static_cast<std::size_t>(inside) * 4 * sizeof(float));
+    }
+  }
+
+  TableIntervals intervals_;
+  std::ptrdiff_t first_width_;
+  FloatLanes shares_;  ///< of an interval in the lane's slabs
+  FloatLanes offsets_;
+};
+
+/// Runs a band of Algebra<IsThin>, IsThin: every t is at most `thin`.
+template <template <bool> class Algebra>
+void run_band(const TableIntervals& intervals, std::size_t first_width, bool backwards, float* buffer,
+              float* const* tables) {
+  const auto run = [&]<bool IsThin>() {
+    if (backwards)
+      Band<Algebra<IsThin>, true>(intervals, first_width).run(buffer, tables);
+    else
+      Band<Algebra<IsThin>, false>(intervals, first_width).run(buffer, tables);
+  };
+  if (intervals.most_rate * intervals.length <= thin * static_cast<float>(first_width))
+    run.template operator()<true>();
+  else
+    run.template operator()<false>();
+}
+
+}  // namespace raytruth::inline RAYTRUTH_LEVEL

@@ -1,0 +1,110 @@
+#pragma once
+
+#include "kernels/level.hpp"
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#ifdef __FMA__
+#include <immintrin.h>
+#endif
+
+namespace raytruth::inline RAYTRUTH_LEVEL {
+
+// As many as one register holds: GCC keeps vectors that are wider than a register in memory.
+#if defined(__AVX512F__)
+inline constexpr std::size_t float_lane_count = 16;
+#elif defined(__FMA__)
+inline constexpr std::size_t float_lane_count = 8;
+#else
+inline constexpr std::size_t float_lane_count = 4;
+#endif
+
+/// Binary32 numbers that are computed with side by side, as Lanes are with binary64.
+struct alignas(4 * float_lane_count) FloatLanes {
+  using Vector = float __attribute__((vector_size(4 * float_lane_count)));
+  using Bits = std::int32_t __attribute__((vector_size(4 * float_lane_count)));
+
+  Vector vector{};
+
+  FloatLanes() = default;
+  // Implicit: the same number in all lanes.
+  FloatLanes(float x) : vector(x - Vector{}) {}  // NOLINT(google-explicit-constructor)
+
+  static FloatLanes load(const float* from) {
+    FloatLanes result;
+    std::memcpy(&result.vector, from, sizeof(Vector));
+    return result;
+  }
+  void store(float* to) const { std::memcpy(to, &vector, sizeof(Vector)); }
+
+  friend FloatLanes operator+(const FloatLanes& a, const FloatLanes& b) { return of(a.vector + b.vector); }
+  friend FloatLanes operator-(const FloatLanes& a, const FloatLanes& b) { return of(a.vector - b.vector); }
+  friend FloatLanes operator*(const FloatLanes& a, const FloatLanes& b) { return of(a.vector * b.vector); }
+
+  static FloatLanes of(Vector vector) {
+    FloatLanes result;
+    result.vector = vector;
+    return result;
+  }
+};
+
+/// a b + c: with one rounding where the processor has it, else with two.
+inline FloatLanes multiply_add(const FloatLanes& a, const FloatLanes& b, const FloatLanes& c) {
+#if defined(__AVX512F__)
+  return FloatLanes::of(FloatLanes::Vector(_mm512_fmadd_ps(__m512(a.vector), __m512(b.vector), __m512(c.vector))));
+#elif defined(__FMA__)
+  return FloatLanes::of(FloatLanes::Vector(_mm256_fmadd_ps(__m256(a.vector), __m256(b.vector), __m256(c.vector))));
+#else
+  return a * b + c;
+#endif
+}
+
+/// 0, 1, 2, ...
+inline FloatLanes::Bits lane_numbers() {
+  FloatLanes::Bits numbers{};
+  for (std::size_t lane = 0; lane < float_lane_count; ++lane) numbers[lane] = static_cast<std::int32_t>(lane);
+  return numbers;
+}
+
+/// `a` in the lanes whose number is below `count`, 0 in the others.
+inline FloatLanes first_lanes(std::int32_t count, const FloatLanes& a) {
+  return FloatLanes::of(lane_numbers() < count ? a.vector : FloatLanes::Vector{});
+}
+
+/// `a` in the lanes whose number is at least `first`, 0 in the others.
+inline FloatLanes last_lanes(std::int32_t first, const FloatLanes& a) {
+  return FloatLanes::of(lane_numbers() >= first ? a.vector : FloatLanes::Vector{});
+}
+
+/// p(r) = (2^r - 1) / r for |r| <= 1/2: the polynomial of degree 4 whose largest relative error is least, 4.4e-7.
+inline FloatLanes exponential_slope(const FloatLanes& r) {
+  FloatLanes p = multiply_add(r, FloatLanes(0x1.5d87dep-10F), FloatLanes(0x1.3cbe58p-7F));
+  p = multiply_add(r, p, FloatLanes(0x1.c6b26ep-5F));
+  p = multiply_add(r, p, FloatLanes(0x1.ebfa4ep-3F));
+  return multiply_add(r, p, FloatLanes(0x1.62e42ep-1F));
+}
+
+/// Opacities are small where an interval is a small part of a slab: up to this t no reduction is needed.
+inline constexpr float thin = 0.5F;
+
+/// 1 - 2^-t for t >= 0, infinity too, or, IsThin, for 0 <= t <= thin. With n the integer next to -t and r = -t - n, 1 -
+/// 2^n 2^r = (1 - 2^n) - 2^n r p(r) keeps the digits of small opacities too. Beyond t = 126 the opacity is 1.
+template <bool IsThin>
+FloatLanes opacity_of(const FloatLanes& t) {
+  if constexpr (IsThin) return t * exponential_slope(FloatLanes(0.0F) - t);
+  constexpr float round_to_integer = 0x1.8p23F;  // adding it leaves the integer in the low bits
+  const FloatLanes most(126.0F);
+  const FloatLanes y = FloatLanes(0.0F) - FloatLanes::of(t.vector < most.vector ? t.vector : most.vector);
+  const FloatLanes shifted = y + round_to_integer;
+  const FloatLanes r = y - (shifted - round_to_integer);
+  constexpr int mantissa_bits = 23;
+  const auto scale_bits = (FloatLanes::Bits(shifted.vector) << mantissa_bits) + std::bit_cast<std::int32_t>(1.0F);
+  const FloatLanes scale = FloatLanes::of(FloatLanes::Vector(scale_bits));
+  return multiply_add(FloatLanes(0.0F) - scale * r, exponential_slope(r), FloatLanes(1.0F) - scale);
+}
+
+}  // namespace raytruth::inline RAYTRUTH_LEVEL

@@ -1,0 +1,31 @@
+#include "render/block_refinement.hpp"
+
+#include "measures/overshoot.hpp"
+
+#include <numbers>
+
+namespace raytruth {
+
+namespace {
+
+constexpr double of_virtual_samples = 1.0 / 8;  // Lee 2010, eq. 8
+constexpr double longest_chord = std::numbers::sqrt3;
+// How far the tensor product of Catmull-Rom cubics leaves its voxels' range, in units of that.
+constexpr double of_catmull_rom = (1.25 * 1.25 * 1.25 - 1) / 2;
+
+}  // namespace
+
+BlockRefinement block_refinement(const Scene& scene, BlockBounds bounds) {
+  switch (bounds) {
+    case BlockBounds::unrefined:
+      return {};
+    case BlockBounds::printed:
+      return {.overshoot = of_virtual_samples};
+    default:
+      const double of_field = scene.field == FieldKind::catmull_rom ? of_catmull_rom : 0;
+      return {.growth = proven_growth(BlockRegion::cells, scene.step.value_or(longest_chord)),
+              .overshoot = of_field + of_virtual_samples * (1 + 2 * of_field)};
+  }
+}
+
+}  // namespace raytruth

@@ -1,0 +1,439 @@
+#include "render/renderer.hpp"
+
+#include "catalogue.hpp"
+#include "core/error.hpp"
+#include "measures/overshoot.hpp"
+#include "reference/ray_integral.hpp"
+#include "render/cell_march.hpp"
+#include "render/table_march.hpp"
+#include "schemes/scheme_integral.hpp"
+#include "signals/cell_walk.hpp"
+#include "signals/tricubic.hpp"
+#include "signals/trilinear.hpp"
+
+#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+#include <utility>
+
+namespace raytruth {
+
+namespace {
+
+constexpr std::int64_t tile_side = 16;
+constexpr double farthest = 0x1p30;  // voxels
+// How far the tensor product of Catmull-Rom cubics leaves its voxels' range, in units of that.
+constexpr double catmull_rom_overshoot = (1.25 * 1.25 * 1.25 - 1) / 2;
+
+struct PixelLight {
+  Eigen::Array4d light = Eigen::Array4d::Zero();
+  double radius = 0;
+  Status status = Status::converged;
+};
+
+/// What a thread renders pixels with.
+using PixelRenderer = std::function<PixelLight(const PixelRay&)>;
+
+Eigen::Array4d light_of(const Vector3<double>& color, double opacity) {
+  return {color[0], color[1], color[2], opacity};
+}
+
+/// The scalar along rays through the scene's field: chains of degree 3 or 9, in voxels.
+template <int Degree>
+struct Field;
+
+template <>
+struct Field<3> {
+  const Grid& grid;
+
+  void trace(const Ray& ray, Chain<3>& chain) const { trace_trilinear(grid, ray, chain); }
+  [[nodiscard]] SignalError error(const Ray& ray, const Chain<3>& chain, const std::vector<bool>& is_needless) const {
+    return trilinear_error(grid, ray, chain, is_needless);
+  }
+};
+
+template <>
+struct Field<9> {
+  const Grid& grid;
+  CubicKernel kernel;
+  double coefficient_error;
+
+  void trace(const Ray& ray, Chain<9>& chain) const { trace_tricubic(grid, kernel, ray, chain); }
+  [[nodiscard]] SignalError error(const Ray& ray, const Chain<9>& chain, const std::vector<bool>& is_needless) const {
+    return tricubic_error(grid, kernel, ray, chain, coefficient_error, is_needless);
+  }
+};
+
+template <int Degree>
+void scale_lengths(Chain<Degree>& chain, double factor) {
+  if (factor == 1) return;
+  for (auto& piece : chain.pieces) {
+    piece.start = piece.start * factor;
+    piece.length *= factor;
+  }
+  chain.end = chain.end * factor;
+}
+
+/// The parts of a ray that are looked at.
+class PartsOfRay {
+ public:
+  PartsOfRay(const std::array<std::int64_t, 3>& size, const OccupiedBlocks* blocks) : size_(size), blocks_(blocks) {}
+
+  /// In `unit`s of a voxel behind the ray's entry; none: all of it. Valid until the next call.
+  std::optional<std::span<const RayPart>> operator()(const Ray& ray, double unit = 1) {
+    if (blocks_ == nullptr) return std::nullopt;
+    parts_.clear();
+    const Stretch inside = clip(size_, ray.origin, ray.direction);
+    if (inside.begin < inside.end) {
+      const auto begin = static_cast<double>(inside.begin);
+      std::array<double, 3> entry{};
+      for (std::size_t axis = 0; axis < 3; ++axis) entry[axis] = ray.origin[axis] + begin * ray.direction[axis];
+      blocks_->parts(entry, ray.direction, static_cast<double>(inside.end - inside.begin), parts_);
+    }
+    for (RayPart& part : parts_) part = {part.begin * unit, part.end * unit};
+    return parts_;
+  }
+
+ private:
+  std::array<std::int64_t, 3> size_;
+  const OccupiedBlocks* blocks_;
+  std::vector<RayPart> parts_;
+};
+
+/// The certified integral. Whatever is clear by more than all rounding of rays and chains neither absorbs nor shines:
+/// rays that meet no occupied block are done, and clear pieces are taken out before the others are certified.
+template <int Degree>
+class ReferenceRenderer {
+ public:
+  ReferenceRenderer(const Field<Degree>& field, const Scene& scene, const OccupiedBlocks& blocks, double margin)
+      : field_(field),
+        parts_of_(field.grid.size, &blocks),
+        clear_(scene.transfer, scene.emission),
+        margin_(margin),
+        integrate_(scene.transfer, scene.emission) {}
+
+  PixelLight operator()(const PixelRay& pixel) {
+    if (parts_of_(pixel.ray)->empty()) return {};
+    field_.trace(pixel.ray, chain_);
+    is_clear_.clear();
+    for (const auto& piece : chain_.pieces) {
+      const auto& b = piece.polynomial.coefficients;
+      const auto [low, high] = std::minmax_element(b.begin(), b.end());
+      is_clear_.push_back(clear_.contain(*low - margin_, *high + margin_));
+    }
+    SignalError error = field_.error(pixel.ray, chain_, is_clear_);
+    error.of_length *= pixel.length_unit;
+    error.unclaimed *= pixel.length_unit;
+    take_out_clear_pieces(error);
+    scale_lengths(chain_, pixel.length_unit);
+    const Certified truth = integrate_(chain_, error);
+    return {light_of(truth.color, truth.opacity), truth.radius, truth.status};
+  }
+
+ private:
+  void take_out_clear_pieces(SignalError& error) {
+    std::size_t kept = 0;
+    DoubleDouble end = 0.0;
+    for (std::size_t i = 0; i < chain_.pieces.size(); ++i) {
+      if (is_clear_[i]) continue;
+      chain_.pieces[kept] = chain_.pieces[i];
+      error.of_pieces[kept] = error.of_pieces[i];
+      chain_.pieces[kept].start = end;
+      end = end + DoubleDouble(chain_.pieces[kept].length);
+      ++kept;
+    }
+    chain_.pieces.resize(kept);
+    error.of_pieces.resize(kept);
+    chain_.end = end;
+  }
+
+  const Field<Degree>& field_;
+  PartsOfRay parts_of_;
+  ClearScalars clear_;
+  double margin_;
+  RayIntegral integrate_;
+  Chain<Degree> chain_;
+  std::vector<bool> is_clear_;
+};
+
+template <int Degree>
+void take_samples(const Chain<Degree>& chain, const std::optional<double>& step, Samples<double>& samples) {
+  if (step)
+    sample_constant(chain, *step, samples);
+  else
+    sample_cells(chain, samples);
+}
+
+template <int Degree>
+PixelRenderer scheme_renderer(const Field<Degree>& field, const Scene& scene, const IntegralScheme& scheme,
+                              const OccupiedBlocks* blocks) {
+  return [&field, &scene, &scheme, parts_of = PartsOfRay(field.grid.size, blocks), chain = Chain<Degree>(),
+          samples = Samples<double>(),
+          integrate = SchemeIntegral(scene.transfer, scene.emission)](const PixelRay& pixel) mutable -> PixelLight {
+    const auto parts = parts_of(pixel.ray, pixel.length_unit);
+    if (parts && parts->empty()) return {};
+    field.trace(pixel.ray, chain);
+    scale_lengths(chain, pixel.length_unit);
+    take_samples(chain, scene.step, samples);
+    const Outcome<> outcome = integrate(scheme, chain, samples, {.occupied = parts, .opaque = scene.opaque});
+    if (!outcome.refusal.empty()) throw InputError(fmt::format("{}: {}", scheme.name, outcome.refusal));
+    return {light_of(outcome.color, outcome.opacity)};
+  };
+}
+
+/// Slabs of any length from a table made for the step: the opacity is corrected as if they were homogeneous.
+template <int Degree>
+PixelRenderer table_renderer(const Field<Degree>& field, const Scene& scene, const Table<double>& table,
+                             const OccupiedBlocks* blocks) {
+  return [&field, &scene, parts_of = PartsOfRay(field.grid.size, blocks), chain = Chain<Degree>(),
+          samples = Samples<double>(), &table](const PixelRay& pixel) mutable -> PixelLight {
+    const auto parts = parts_of(pixel.ray, pixel.length_unit);
+    if (parts && parts->empty()) return {};
+    field.trace(pixel.ray, chain);
+    scale_lengths(chain, pixel.length_unit);
+    take_samples(chain, scene.step, samples);
+    const Omissions omissions{.occupied = parts, .opaque = scene.opaque};
+    Rules<double> rules;
+    const auto texel = [&table](std::size_t front, std::size_t back) { return table.at(front, back); };
+    PixelLight result;
+    const std::size_t full = full_intervals(samples);
+    for (std::size_t k = 0; k < samples.interval_count() && result.light[3] < omissions.opaque; ++k) {
+      if (omissions.omit(static_cast<double>(samples.positions[k]), static_cast<double>(samples.positions[k + 1])))
+        continue;
+      const std::array scalars{samples.values[k], samples.values[k + 1]};
+      Eigen::Array4d slab = scene.table->filter == TableFilter::linear ? bilinear<double>(table.axes, texel, scalars)
+                                                                       : nearest<double>(table.axes, texel, scalars);
+      if (!samples.step || k >= full) {
+        const double share = samples.length_of(k) / table.axes.length;
+        slab = rules.opacity_corrected_slab(slab, rules.opacity_correction(slab[3], share), share);
+      }
+      result.light = rules.over(result.light, slab);
+    }
+    return result;
+  };
+}
+
+template <int Degree>
+PixelRenderer shaded_renderer(const Field<Degree>& field, const Scene& scene, const OccupiedBlocks* blocks) {
+  return [&field, &scene, parts_of = PartsOfRay(field.grid.size, blocks), chain = Chain<Degree>(),
+          samples = Samples<double>(), shaded = ShadedRay(scene.grid, scene.transfer, scene.emission, *scene.shading)](
+             const PixelRay& pixel) mutable -> PixelLight {
+    const auto parts = parts_of(pixel.ray, pixel.length_unit);
+    if (parts && parts->empty()) return {};
+    field.trace(pixel.ray, chain);
+    scale_lengths(chain, pixel.length_unit);
+    take_samples(chain, scene.step, samples);
+    return {shaded(pixel, samples, {.occupied = parts, .opaque = scene.opaque})};
+  };
+}
+
+CubicKernel kernel_of(FieldKind kind) {
+  return kind == FieldKind::catmull_rom ? CubicKernel::catmull_rom : CubicKernel::bspline;
+}
+
+/// How far samples of the field reach beyond a block, and how far the field leaves the range of its voxels.
+BlockRefinement refinement_of(const Scene& scene, BlockBounds bounds) {
+  constexpr double virtual_samples = 1.0 / 8;  // Lee 2010, eq. 8
+  constexpr double longest_chord = std::numbers::sqrt3;
+  switch (bounds) {
+    case BlockBounds::unrefined:
+      return {};
+    case BlockBounds::printed:
+      return {.overshoot = virtual_samples};
+    default:
+      const double of_field = scene.field == FieldKind::catmull_rom ? catmull_rom_overshoot : 0;
+      return {.growth = proven_growth(BlockRegion::cells, scene.step.value_or(longest_chord)),
+              .overshoot = of_field + virtual_samples * (1 + 2 * of_field)};
+  }
+}
+
+/// More than what a displacement by 10^-9 of a voxel changes in a field: no cubic kernel has a derivative above 16/3
+/// per axis and unit of the voxels' range. And more than a chain's rounding, some units in the last place of its
+/// voxels.
+double margin_of(const Grid& grid) {
+  const auto [low, high] = grid.range();
+  return 1e-7 * std::max({high - low, std::abs(low), std::abs(high)});
+}
+
+/// Blocks that hold for every point of every ray.
+OccupiedBlocks certain_blocks(const Scene& scene, const Grid& grid) {
+  const std::int64_t growth = scene.field == FieldKind::trilinear ? 0 : 1;
+  const double overshoot = scene.field == FieldKind::catmull_rom ? catmull_rom_overshoot : 0;
+  return {grid,
+          ClearScalars(scene.transfer, scene.emission),
+          8,
+          {.growth = growth, .overshoot = overshoot, .margin = margin_of(grid)}};
+}
+
+Table<double> table_of(const Scene& scene) {
+  const auto& builders = catalogue::table_builders();
+  const auto builder = std::find_if(builders.begin(), builders.end(),
+                                    [&](const TableBuilder& row) { return row.name == scene.table->builder; });
+  if (builder == builders.end())
+    throw InputError(fmt::format("table builder {}; one of the listed is allowed", scene.table->builder));
+  const auto [low, high] = scene.grid.range();
+  // A constant grid asks for one entry only.
+  const TableAxes axes{
+      .size = scene.table->size, .low = low, .high = low < high ? high : low + 1, .length = scene.step.value_or(1)};
+  return stored(scene.table->format, builder->make(scene.transfer, axes, scene.emission));
+}
+
+}  // namespace
+
+struct Renderer::Parts {
+  explicit Parts(Scene its_scene) : scene(std::move(its_scene)), view(scene.camera, scene.grid.spacing) {
+    refuse_far_cameras();
+    // A longer step makes the same samples, both ends of the ray, but numbers that nobody can calculate with.
+    if (scene.step) scene.step = std::min(*scene.step, 2 * diagonal());
+    const bool is_trilinear = scene.field == FieldKind::trilinear;
+    if (scene.field == FieldKind::bspline_prefiltered) coefficients = bspline_coefficients(scene.grid);
+    const Grid& grid = coefficients ? *coefficients : scene.grid;
+    if (is_trilinear)
+      choose(field_3.emplace(Field<3>{scene.grid}));
+    else
+      choose(field_9.emplace(
+          Field<9>{grid, kernel_of(scene.field), coefficients ? prefilter_error(scene.grid, grid) : 0.0}));
+  }
+
+  /// From there positions of 53 bits would miss voxels.
+  void refuse_far_cameras() const {
+    const auto [width, height] = scene.camera.size;
+    for (const std::int64_t column : {std::int64_t{0}, width - 1})
+      for (const std::int64_t row : {std::int64_t{0}, height - 1})
+        for (const double x : view(column, row).ray.origin)
+          if (!(std::abs(x) <= farthest))
+            throw InputError(fmt::format("a ray from voxel coordinate {}; magnitudes up to 2^30 are allowed", x));
+  }
+
+  /// Of the grid, in smallest spacings.
+  [[nodiscard]] double diagonal() const {
+    const auto& [x, y, z] = scene.grid.spacing;
+    const auto& size = scene.grid.size;
+    return std::hypot(x * static_cast<double>(size[0]), y * static_cast<double>(size[1]),
+                      z * static_cast<double>(size[2])) /
+           std::min({x, y, z});
+  }
+
+  template <int Degree>
+  void choose(const Field<Degree>& field) {
+    if (scene.shading && (scene.scheme != "order1" || scene.table))
+      throw InputError(fmt::format("scheme {}{} with shading; order1 without a table is allowed", scene.scheme,
+                                   scene.table ? " and a table" : ""));
+    if (scene.scheme == "reference") {
+      blocks.emplace(certain_blocks(scene, field.grid));
+      make_renderer = [&field, this] {
+        return ReferenceRenderer<Degree>(field, scene, *blocks, margin_of(field.grid));
+      };
+      return;
+    }
+    if (scene.empty_space)
+      blocks.emplace(field.grid, ClearScalars(scene.transfer, scene.emission), scene.empty_space->block,
+                     refinement_of(scene, scene.empty_space->bounds));
+    const OccupiedBlocks* const occupied = blocks ? &*blocks : nullptr;
+    if (scene.table) return choose_table(field, occupied);
+    if (scene.shading) {
+      const std::string_view why = scene.shading->method->refusal(scene.shading->lighting);
+      if (!why.empty()) throw InputError(fmt::format("shading {}: {}", scene.shading->method->name, why));
+      make_renderer = [&field, this, occupied] { return shaded_renderer(field, scene, occupied); };
+      return;
+    }
+    scheme = catalogue::find_integral_scheme(scene.scheme);
+    if (scheme == nullptr) throw InputError(fmt::format("scheme {}; one of the listed is allowed", scene.scheme));
+    if (Degree == 3 && std::holds_alternative<CellCubic>(scheme->method)) {
+      cell_march.emplace(scene.grid, scene.transfer, scene.emission, scene.opaque);
+      make_renderer = [this, occupied] {
+        return [march = CellRay(*cell_march, scene.transfer, scene.emission),
+                parts_of = PartsOfRay(scene.grid.size, occupied)](const PixelRay& pixel) mutable -> PixelLight {
+          return {march(pixel, parts_of(pixel.ray))};
+        };
+      };
+      return;
+    }
+    refuse_unsuitable<Degree>();
+    make_renderer = [&field, this, occupied] { return scheme_renderer(field, scene, *scheme, occupied); };
+  }
+
+  template <int Degree>
+  void choose_table(const Field<Degree>& field, const OccupiedBlocks* occupied) {
+    if (scene.scheme != "order1")
+      throw InputError(fmt::format("scheme {} with a table; order1 is allowed", scene.scheme));
+    table = table_of(scene);
+    if (Degree == 3 && scene.step) {
+      table_march.emplace(scene.grid, *table, scene.table->filter, *scene.step, scene.opaque);
+      make_renderer = [this, occupied] {
+        return [this, parts_of = PartsOfRay(scene.grid.size, occupied)](const PixelRay& pixel) mutable -> PixelLight {
+          return {(*table_march)(pixel, parts_of(pixel.ray))};
+        };
+      };
+    } else {
+      make_renderer = [&field, this, occupied] { return table_renderer(field, scene, *table, occupied); };
+    }
+  }
+
+  /// Tries the scheme on a ray of two cells, so that what it refuses is refused before any pixel.
+  template <int Degree>
+  void refuse_unsuitable() const {
+    Chain<Degree> chain;
+    const double length = scene.step.value_or(1);
+    chain.pieces = {{0.0, length, {}}, {length, length, {}}};
+    chain.end = 2 * length;
+    Samples<double> samples;
+    take_samples(chain, scene.step, samples);
+    const Outcome<> outcome = SchemeIntegral(scene.transfer, scene.emission)(*scheme, chain, samples);
+    if (!outcome.refusal.empty()) throw InputError(fmt::format("scheme {}: {}", scheme->name, outcome.refusal));
+  }
+
+  Scene scene;
+  CameraView view;
+  std::optional<Grid> coefficients;
+  std::optional<Field<3>> field_3;
+  std::optional<Field<9>> field_9;
+  std::optional<OccupiedBlocks> blocks;
+  const IntegralScheme* scheme = nullptr;
+  std::optional<Table<double>> table;
+  std::optional<TableMarch> table_march;
+  std::optional<CellMarch> cell_march;
+  std::function<PixelRenderer()> make_renderer;
+};
+
+Renderer::Renderer(Scene scene) : parts_(std::make_unique<const Parts>(std::move(scene))) {}
+Renderer::~Renderer() = default;
+
+Rendering Renderer::render(const std::function<void(std::size_t, std::size_t)>& progress) const {
+  const auto [width, height] = parts_->scene.camera.size;
+  const bool is_certified = parts_->scene.scheme == "reference";
+  Rendering result{Image(parts_->scene.camera.size)};
+  if (is_certified) result.radii.resize(result.image.pixels.size());
+  const std::int64_t columns = (width + tile_side - 1) / tile_side;
+  const std::int64_t tiles = columns * ((height + tile_side - 1) / tile_side);
+
+  tbb::enumerable_thread_specific<PixelRenderer> renderers(parts_->make_renderer);
+  std::atomic<std::int64_t> not_converged = 0;
+  std::atomic<std::size_t> done = 0;
+  std::mutex telling;
+  tbb::parallel_for(std::int64_t{0}, tiles, [&](std::int64_t tile) {
+    PixelRenderer& light_of_pixel = renderers.local();
+    const std::int64_t top = tile / columns * tile_side;
+    const std::int64_t left = tile % columns * tile_side;
+    for (std::int64_t row = top; row < std::min(top + tile_side, height); ++row)
+      for (std::int64_t column = left; column < std::min(left + tile_side, width); ++column) {
+        const PixelLight pixel = light_of_pixel(parts_->view(column, row));
+        result.image.at(column, row) = pixel.light;
+        if (is_certified) result.radii[static_cast<std::size_t>(row * width + column)] = pixel.radius;
+        if (pixel.status != Status::converged) ++not_converged;
+      }
+    ++done;
+    if (!progress) return;
+    if (const std::unique_lock lock(telling, std::try_to_lock); lock) progress(done, static_cast<std::size_t>(tiles));
+  });
+  result.not_converged = not_converged;
+  return result;
+}
+
+}  // namespace raytruth

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "reference/certified.hpp"
+#include "render/occupied_blocks.hpp"
+#include "render/shaded_ray.hpp"
+#include "tables/look_up.hpp"
+#include "transfer/piecewise_linear.hpp"
+#include "volume/camera.hpp"
+#include "volume/grid.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace raytruth {
+
+/// How a scene makes a field of its voxels (signals/trilinear.hpp, signals/tricubic.hpp).
+enum class FieldKind { trilinear, bspline, bspline_prefiltered, catmull_rom };
+
+inline constexpr std::array<std::string_view, 4> field_kind_names{"trilinear", "bspline", "bspline_prefiltered",
+                                                                  "catmull_rom"};
+
+/// How a table is read between its entries.
+enum class TableFilter { nearest, linear };
+
+inline constexpr std::array<std::string_view, 2> table_filter_names{"nearest", "linear"};
+
+/// A pre-integration table from which the slabs of `order1` are read.
+struct SceneTable {
+  std::string builder = "exact";  ///< of catalogue::table_builders
+  std::size_t size = 256;
+  TableFormat format = table_formats[1];
+  TableFilter filter = TableFilter::linear;
+};
+
+/// Blocks that are skipped where their min-max ranges are clear.
+struct EmptySpace {
+  std::int64_t block = 8;
+  BlockBounds bounds = BlockBounds::corrected;
+};
+
+/// An image to be made. Lengths are in smallest spacings of the grid: extinctions are per such a length, steps so long.
+struct Scene {
+  Grid grid = {};
+  FieldKind field = FieldKind::trilinear;
+  PiecewiseLinear transfer;
+  Emission emission = Emission::associated;
+  Camera camera = {};
+  std::string scheme = "reference";  ///< this, or one of catalogue::integral_schemes
+  std::optional<double> step = {};   ///< of samples; none: at cells' borders and midpoints
+  std::optional<SceneTable> table = {};
+  std::optional<SceneShading> shading = {};                 ///< of the slabs of `order1`, without a table
+  double opaque = std::numeric_limits<double>::infinity();  ///< rays end where their opacity reaches this
+  std::optional<EmptySpace> empty_space = {};
+};
+
+}  // namespace raytruth

@@ -1,0 +1,60 @@
+#include "render/image_error.hpp"
+#include "render/image_file.hpp"
+#include "render/structural_similarity.hpp"
+#include "study/commands.hpp"
+#include "study/output.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace raytruth {
+
+namespace {
+
+template <class Number>
+nlohmann::ordered_json or_null(const std::optional<Number>& number) {
+  return number ? nlohmann::ordered_json(*number) : nlohmann::ordered_json(nullptr);
+}
+
+/// |B - A| of each channel, times `gain`.
+Image difference_image(const Image& a, const Image& b, double gain) {
+  Image difference(a.size);
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    difference.pixels[i] = gain * (b.pixels[i].max(0).min(1) - a.pixels[i].max(0).min(1)).abs();
+    difference.pixels[i][3] = 1;
+  }
+  return difference;
+}
+
+}  // namespace
+
+int compare_images(const CompareOptions& options) {
+  const Image a = read_image(options.reference);
+  const Image b = read_image(options.image);
+  const ImageError error = image_error(b, a);
+  nlohmann::ordered_json result{{"reference", std::filesystem::path(options.reference).filename().string()},
+                                {"image", std::filesystem::path(options.image).filename().string()},
+                                {"size", a.size},
+                                {"danskin_hanrahan", nullptr},
+                                {"rmse", error.rmse},
+                                {"psnr", or_null(error.psnr)},
+                                {"psnr_peak", 1},
+                                {"maximum", error.maximum},
+                                {"maximum_pixel", error.place},
+                                {"bias", error.bias},
+                                {"ssim", or_null(structural_similarity(b, a))}};
+  if (error.relative) result["danskin_hanrahan"] = 100 * *error.relative;
+  if (!options.difference.empty()) {
+    const std::filesystem::path file = options.difference;
+    // Differences are no colours, so they are not encoded as such.
+    write_whole(file,
+                image_file(difference_image(a, b, options.gain), file.extension().string(), Transfer8Bit::linear));
+    result["difference"] = file.filename().string();
+    result["gain"] = options.gain;
+  }
+  print(result.dump(2) + "\n");
+  return 0;
+}
+
+}  // namespace raytruth

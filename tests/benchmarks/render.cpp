@@ -1,0 +1,64 @@
+// Images of 512 x 512 pixels of a grid of 256^3 voxels at step 1: by a first-order table in binary32, by the exact
+// cubic of every cell, and certified. Preparation (tables, copies of voxels) is not timed.
+
+#include "paired.hpp"
+#include "render/renderer.hpp"
+#include "signals/random_field.hpp"
+
+#include <cstdint>
+#include <string>
+
+namespace raytruth {
+namespace {
+
+constexpr std::int64_t image_side = 512;
+
+/// Smooth noise: half of it clear, the rest a thin mist.
+const Grid& mist() {
+  static const Grid grid = random_field(256, 6, 1);
+  return grid;
+}
+
+Scene scene_of(const std::string& scheme, bool skips) {
+  constexpr double middle = 127.5;
+  Scene scene{.grid = mist(),
+              .transfer = PiecewiseLinear(
+                  {{0.5, {0, {0.2, 0.3, 0.9}}}, {0.6, {0.05, {0.9, 0.6, 0.2}}}, {0.8, {0.2, {1, 1, 1}}}}),
+              .camera = {.eye = {middle + 300, middle + 200, middle + 400},
+                         .target = {middle, middle, middle},
+                         .up = {0, 1, 0},
+                         .projection = Perspective{30},
+                         .size = {image_side, image_side}},
+              .scheme = scheme,
+              .step = 1};
+  if (skips) scene.empty_space = EmptySpace{};
+  if (scheme == "order1") scene.table = SceneTable{};
+  return scene;
+}
+
+void images(benchmark::State& state, const std::string& scheme, bool skips) {
+  const Renderer subject(scene_of(scheme, skips));
+  const Renderer table(scene_of("order1", skips && scheme != "order1"));
+  benchmarks::run_paired(
+      state, [&] { return subject.render().image.pixels.size(); }, [&] { return table.render().image.pixels.size(); });
+}
+
+BENCHMARK_CAPTURE(images, table_skipping_against_table, "order1", true)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
+BENCHMARK_CAPTURE(images, cell_cubic_against_table, "cell_cubic", false)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
+BENCHMARK_CAPTURE(images, cell_cubic_against_table_skipping, "cell_cubic", true)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
+BENCHMARK_CAPTURE(images, certified_against_table, "reference", false)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
+
+}  // namespace
+}  // namespace raytruth

@@ -1,0 +1,167 @@
+// Builds of El Hajjar's table of second order (fig. 6), RGBA in binary32, N iterations per entry. The peer is a plain
+// loop as section 6.2 describes it: for each entry the parabola's coefficients, and N times Horner's rule, the nearest
+// entry of a transfer function whose opacities are corrected to the step beforehand, and a composite; so the peer
+// leaves out the interpolation between entries and the exponentials that the subject does. `same_numbers` is the same
+// loop with both, as the subject has them. Random transfer function of as many entries as the table has along an axis.
+
+#include "paired.hpp"
+
+#include "kernels/slab_kernels.hpp"
+#include "tables/second_order.hpp"
+#include "transfer/study_transfers.hpp"
+
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace raytruth::benchmarks {
+namespace {
+
+TableAxes axes_of(std::size_t size) { return {.size = size, .low = 0, .high = 1, .length = 1}; }
+
+/// The studies' random transfer function at this many entries.
+PiecewiseLinear transfer_of(const TableAxes& axes) {
+  const PiecewiseLinear all = random_transfer(5, 1);
+  std::vector<TransferPoint> points;
+  for (std::size_t i = 0; i < axes.size; ++i) points.push_back({axes.scalar(i), all.at(axes.scalar(i))});
+  return PiecewiseLinear(std::move(points));
+}
+
+/// Calls entry(front, middle, back, texel) for all.
+template <class Entry>
+double for_each_entry(Table3<float>& table, const Entry& entry) {
+  const std::size_t n = table.axes.size;
+  for (std::size_t back = 0; back < n; ++back)
+    for (std::size_t middle = 0; middle < n; ++middle)
+      for (std::size_t front = 0; front < n; ++front)
+        entry(static_cast<float>(front), static_cast<float>(middle), static_cast<float>(back),
+              table.texel(front, middle, back));
+  return static_cast<double>(table.values.back());
+}
+
+double plain_loop(const PiecewiseLinear& transfer, Table3<float>& table, int iterations) {
+  const std::size_t n = table.axes.size;
+  std::vector<std::array<float, 4>> corrected(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Optics optics = transfer.at(table.axes.scalar(i));
+    const double opacity = -std::expm1(-optics.extinction * table.axes.length / iterations);
+    for (Eigen::Index c = 0; c < 3; ++c)
+      corrected[i][static_cast<std::size_t>(c)] = static_cast<float>(opacity * optics.color[c]);
+    corrected[i][3] = static_cast<float>(opacity);
+  }
+  const float last = static_cast<float>(n - 1);
+  return for_each_entry(table, [&](float front, float middle, float back, float* texel) {
+    const float a = 2 * front - 4 * middle + 2 * back;
+    const float b = -3 * front + 4 * middle - back;
+    std::array<float, 4> slab{};
+    for (int k = 0; k < iterations; ++k) {
+      const float t = (static_cast<float>(k) + 0.5F) / static_cast<float>(iterations);
+      const float at = std::min(std::max((a * t + b) * t + front, 0.0F), last);
+      const auto& step = corrected[static_cast<std::size_t>(static_cast<int>(at + 0.5F))];
+      const float transmittance = 1 - slab[3];
+      for (std::size_t c = 0; c < 4; ++c) slab[c] += transmittance * step[c];
+    }
+    std::copy(slab.begin(), slab.end(), texel);
+  });
+}
+
+double same_numbers(const PiecewiseLinear& transfer, Table3<float>& table, int iterations) {
+  const std::size_t n = table.axes.size;
+  std::vector<std::array<float, 4>> entries(n + 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Optics optics = transfer.at(table.axes.scalar(i));
+    entries[i] = {static_cast<float>(optics.color[0]), static_cast<float>(optics.color[1]),
+                  static_cast<float>(optics.color[2]), static_cast<float>(optics.extinction)};
+  }
+  entries[n] = entries[n - 1];
+  const float last = static_cast<float>(n - 1);
+  const float step = static_cast<float>(table.axes.length) / static_cast<float>(iterations);
+  return for_each_entry(table, [&](float front, float middle, float back, float* texel) {
+    const float a = 2 * front - 4 * middle + 2 * back;
+    const float b = -3 * front + 4 * middle - back;
+    std::array<float, 4> slab{};
+    for (int k = 0; k < iterations; ++k) {
+      const float t = (static_cast<float>(k) + 0.5F) / static_cast<float>(iterations);
+      const float at = std::min(std::max((a * t + b) * t + front, 0.0F), last);
+      const auto first = static_cast<std::size_t>(static_cast<int>(at));
+      const float weight = at - static_cast<float>(first);
+      std::array<float, 4> optics;
+      for (std::size_t c = 0; c < 4; ++c)
+        optics[c] = entries[first][c] + weight * (entries[first + 1][c] - entries[first][c]);
+      const float absorbed = (1 - slab[3]) * -std::expm1(-optics[3] * step);
+      for (std::size_t c = 0; c < 3; ++c) slab[c] += absorbed * optics[c];
+      slab[3] += absorbed;
+    }
+    std::copy(slab.begin(), slab.end(), texel);
+  });
+}
+
+double largest_difference(const Table3<float>& a, const Table3<float>& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.values.size(); ++i)
+    largest = std::max(largest, std::abs(static_cast<double>(a.values[i]) - static_cast<double>(b.values[i])));
+  return largest;
+}
+
+template <class Peer>
+void run(benchmark::State& state, const Peer& peer, double tolerance) {
+  const TableAxes axes = axes_of(static_cast<std::size_t>(state.range(0)));
+  const auto iterations = static_cast<int>(state.range(1));
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(state.range(2)));
+  const PiecewiseLinear transfer = transfer_of(axes);
+  Table3<float> of_peer(axes);
+  Table3<float> of_subject(axes);
+  const auto fast = [&] {
+    fill_second_order_table(of_subject, transfer, {.count = iterations}, *slab_kernel_versions().front());
+    return static_cast<double>(of_subject.values.back());
+  };
+  peer(transfer, of_peer, iterations);
+  fast();
+  const double difference = largest_difference(of_subject, of_peer);
+  if (!(difference <= tolerance)) return state.SkipWithError("the two do not agree");
+  run_paired(state, fast, [&] { return peer(transfer, of_peer, iterations); });
+  state.counters["largest_difference"] = difference;
+}
+
+/// Nearest entries against linear ones: they agree to an 8-bit transfer function's jumps only.
+void fast_against_plain_loop(benchmark::State& state) { run(state, plain_loop, 1); }
+BENCHMARK(fast_against_plain_loop)
+    ->ArgNames({"size", "iterations", "threads"})
+    ->ArgsProduct({{64, 256}, {64}, {1}})
+    ->ArgsProduct({{64}, {8, 16, 32, 128, 256}, {1}})
+    ->Args({256, 64, 2})
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+
+void fast_against_same_numbers(benchmark::State& state) { run(state, same_numbers, 2e-5); }
+BENCHMARK(fast_against_same_numbers)
+    ->ArgNames({"size", "iterations", "threads"})
+    ->ArgsProduct({{64}, {64}, {1}})
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+
+/// The exact table, entry by entry from the certified reference, against the plain loop: its speedup is below 1.
+void certified_against_plain_loop(benchmark::State& state) {
+  const TableAxes axes = axes_of(static_cast<std::size_t>(state.range(0)));
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 1);
+  const PiecewiseLinear transfer = transfer_of(axes);
+  Table3<float> of_peer(axes);
+  run_paired(
+      state,
+      [&] {
+        return static_cast<double>(second_order_table(transfer, axes, Emission::associated, Ideal{}).values.back());
+      },
+      [&] { return plain_loop(transfer, of_peer, static_cast<int>(state.range(1))); });
+}
+BENCHMARK(certified_against_plain_loop)
+    ->ArgNames({"size", "iterations"})
+    ->Args({64, 64})
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace raytruth::benchmarks

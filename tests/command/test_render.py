@@ -1,0 +1,230 @@
+"""`raytruth render`: images of small scenes, what it writes, and what it refuses."""
+
+import json
+import pathlib
+import struct
+import unittest
+import zlib
+
+import numpy
+
+from support import SOURCE, ProgramTest, changed
+
+# Two cells along x, a ray per pixel along z through the whole field of 2 voxels.
+SCENE = {
+    "volume": {"size": [3, 2, 2], "values": [0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0]},
+    "transfer_function": {
+        "points": [
+            {"s": 0, "extinction": 0, "color": [1, 0.5, 0.25]},
+            {"s": 1, "extinction": 2, "color": [1, 0.5, 0.25]},
+        ]
+    },
+    "camera": {"eye": [1, 0.5, -5], "target": [1, 0.5, 0.5], "up": [0, 1, 0], "height": 1, "size": [2, 1]},
+    "scheme": "reference",
+}
+NOISE = changed(
+    changed(SCENE, "/volume", {"kind": "random_field", "size": 12, "smoothing": 1}),
+    "/camera",
+    {"eye": [30, 20, -25], "target": [5.5, 5.5, 5.5], "up": [0, 1, 0], "fov_y": 25, "size": [24, 20]},
+)
+
+
+def png_pixels(data):
+    """Width, height and bytes of an 8-bit RGB image without filters other than those of the standard."""
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    at, packed, chunks = 8, b"", []
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at : at + 8])
+        body = data[at + 8 : at + 8 + length]
+        chunks.append(kind)
+        if kind == b"IHDR":
+            width, height, depth, color = struct.unpack(">IIBB", body[:10])
+            assert (depth, color) == (8, 2)
+        if kind == b"IDAT":
+            packed += body
+        at += length + 12
+    raw = zlib.decompress(packed)
+    return width, height, raw, chunks
+
+
+class Images(ProgramTest):
+    def render(self, scene, name="image.npy", *options):
+        answer = self.json_of("render", self.write("scene.json", scene), "-o", name, *options)
+        return answer, (numpy.load(self.folder / name) if name.endswith(".npy") else (self.folder / name).read_bytes())
+
+    def test_certified_pixels_have_the_closed_form(self):
+        # Pixel centres at x = 1 -+ 1/2, where s = 1/2 all along z: opacity 1 - exp(-2/2 2), 2 being the way through.
+        answer, image = self.render(SCENE)
+        opacity = 1 - numpy.exp(-2.0)
+        self.assertEqual(image.shape, (1, 2, 4))
+        self.assertEqual(image.dtype, numpy.float32)
+        for pixel in image[0]:
+            numpy.testing.assert_allclose(pixel, [opacity, opacity / 2, opacity / 4, opacity], rtol=1e-7)
+        radii = numpy.load(self.folder / "image.radius.npy")
+        self.assertEqual(radii.shape, (1, 2))
+        self.assertLess(radii.max(), 1e-13)
+        self.assertEqual((answer["error_bound"], answer["not_converged"]), (radii.max(), 0))
+        self.assertEqual(answer["transfer_function"]["color"], "linear light")
+
+    def test_extinction_and_step_are_per_smallest_spacing(self):
+        scene = changed(SCENE, "/volume/spacing", [3, 3, 5])
+        scene["camera"] = {"eye": [3, 1.5, -50], "target": [3, 1.5, 0], "up": [0, 1, 0], "height": 3, "size": [2, 1]}
+        for scheme, options in (("reference", {}), ("order1", {"step": 0.25}), ("order1", {"step": 0.25, "table": {"size": 65}})):
+            _, image = self.render({**scene, "scheme": scheme, **options})
+            numpy.testing.assert_allclose(image[0, :, 3], 1 - numpy.exp(-2 * 0.5 * 2 * 5 / 3), rtol=1e-6)
+
+    def test_row_0_is_on_top(self):
+        scene = changed(SCENE, "/volume", {"size": [2, 3, 2], "values": [0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1]})
+        scene["camera"] = {"eye": [0.5, 1, -5], "target": [0.5, 1, 0], "up": [0, 1, 0], "height": 3, "size": [1, 3]}
+        _, image = self.render(scene)
+        self.assertGreater(image[0, 0, 3], 0.9)
+        self.assertEqual(image[2, 0, 3], 0)
+
+    def test_formats_hold_the_same_image(self):
+        _, array = self.render(SCENE)
+        _, pfm = self.render(SCENE, "image.pfm")
+        self.assertTrue(pfm.startswith(b"PF\n2 1\n-1.0\n"))
+        numpy.testing.assert_array_equal(numpy.frombuffer(pfm[12:], "<f4").reshape(1, 2, 3), array[..., :3])
+        for option, chunk, encode in ((["--linear"], b"gAMA", lambda x: x), ([], b"sRGB", lambda x: 1.055 * x ** (1 / 2.4) - 0.055)):
+            answer, png = self.render(SCENE, "image.png", *option)
+            width, height, raw, chunks = png_pixels(png)
+            self.assertEqual((width, height), (2, 1))
+            self.assertIn(chunk, chunks)
+            expected = numpy.floor(255 * encode(array[0, 0, :3].astype(float)) + 0.5)
+            compared = self.json_of("compare", "image.png", "image.png")
+            self.assertEqual(compared["maximum"], 0)
+            self.assertEqual(list(raw[1:4]), list(expected))  # the first pixel of a row has no neighbour to filter by
+            self.assertEqual(answer["encoding"], "linear" if option else "sRGB")
+
+    def test_every_kind_of_scheme_comes_near_the_certified_image(self):
+        _, truth = self.render(NOISE)
+        self.assertGreater(truth[..., 3].max(), 0.5)
+        for scheme, options, near in (
+            ("cell_cubic", {}, 1e-6),
+            ("cell_adaptive", {}, 1e-2),
+            ("order1", {"step": 0.1}, 1e-3),
+            ("order1", {"step": 0.1, "table": {"size": 256}}, 1e-3),
+            ("order1", {"table": {"size": 256}}, 3e-3),
+            ("order2", {"step": 0.1}, 1e-3),
+            ("riemann_mid", {"step": 0.1}, 1e-3),
+            ("simpson", {}, 1e-2),
+            ("order1_iterations_64", {"step": 0.1}, 1e-3),
+            ("order1_no_attenuation", {"step": 0.1}, 0.1),  # y / (1 - exp(-y)) at the optical depth y = 0.2 of a slab
+            ("virtual_catmull_rom", {"step": 0.1}, 1e-3),
+        ):
+            with self.subTest(scheme=scheme, **options):
+                _, image = self.render({**NOISE, "scheme": scheme, **options})
+                self.assertLess(abs(image - truth).max(), near)
+
+    def test_reconstructions_differ_and_schemes_follow_them(self):
+        images = []
+        for kind in ("trilinear", "bspline", "bspline_prefiltered", "catmull_rom"):
+            _, truth = self.render({**NOISE, "reconstruction": kind})
+            for options in ({}, {"table": {"size": 256}}):
+                _, image = self.render({**NOISE, "reconstruction": kind, "scheme": "order1", "step": 0.1, **options})
+                self.assertLess(abs(image - truth).max(), 2e-3)
+            images.append(truth)
+        for i, image in enumerate(images):
+            for other in images[:i]:
+                self.assertGreater(abs(image - other).max(), 1e-3)
+
+    def test_shading_has_the_closed_form_on_a_plane(self):
+        # s = x / 2: the gradient is along x everywhere between voxels 1 and 3, the extinction 1 + x, and
+        # the light makes an angle with it whose cosine is 0.6: C = A (0.1 + 0.8 0.6) with the colour 1.
+        values = [x / 2 for _ in range(4) for x in range(5)]
+        transfer = {"points": [{"s": s, "extinction": e, "color": [1, 1, 1]} for s, e in ((0, 1), (2, 5))]}
+        camera = {"eye": [2, 0.5, -9], "target": [2, 0.5, 0], "up": [0, 1, 0], "height": 1, "size": [1, 1]}
+        shading = {"method": "quadratic_arc", "light": [-3, 4, 0], "ambient": 0.1, "diffuse": 0.8, "specular": 0, "shininess": 10}
+        scene = {"volume": {"size": [5, 2, 2], "values": values}, "transfer_function": transfer, "camera": camera,
+                 "scheme": "order1", "step": 0.5, "shading": shading}
+        for change, cosine in (({}, 0.6), ({"normal": "gradient"}, 0), ({"normal": "gradient", "negative": "mirror"}, 0.6)):
+            _, image = self.render({**scene, "shading": {**shading, **change}})
+            opacity = 1 - numpy.exp(-2 * (1 + 2))
+            numpy.testing.assert_allclose(image[0, 0], [opacity * (0.1 + 0.8 * cosine)] * 3 + [opacity], rtol=1e-6)
+        # Specular: the half vector between (-0.6, 0.8, 0) and the viewer at -z has the cosine 0.6 / sqrt(2) with -x.
+        _, image = self.render({**scene, "shading": {**shading, "diffuse": 0, "specular": 0.5, "shininess": 3}})
+        numpy.testing.assert_allclose(image[0, 0, 0], opacity * (0.1 + 0.5 * (0.6 / 2**0.5) ** 3), rtol=1e-6)
+
+    def test_where_the_gradient_is_zero_only_ambient_light_counts(self):
+        scene = changed(SCENE, "/volume/values", [0.5] * 12)
+        shading = {"method": "quadratic_arc", "light": [0, 0, -1], "ambient": 0.25, "diffuse": 1, "specular": 1, "shininess": 10}
+        _, image = self.render({**scene, "scheme": "order1", "step": 0.5, "shading": shading})
+        numpy.testing.assert_allclose(image[0, 0, :3], 0.25 * (1 - numpy.exp(-2)) * numpy.array([1, 0.5, 0.25]), rtol=1e-6)
+
+    def test_the_same_bytes_on_any_number_of_threads(self):
+        for scheme, options in (("reference", {}), ("cell_cubic", {}), ("order1", {"step": 1, "table": {"size": 64}})):
+            scene = self.write("scene.json", {**NOISE, "scheme": scheme, **options})
+            for threads in (1, 2):
+                self.output_of("render", scene, "-o", f"{threads}.npy", "-j", threads)
+            self.assertEqual((self.folder / "1.npy").read_bytes(), (self.folder / "2.npy").read_bytes())
+
+    def test_corrected_blocks_change_nothing(self):
+        transfer = {"points": [{"s": s, "extinction": e, "color": [1, s, 0]} for s, e in ((0.55, 0), (0.7, 1), (1, 1))]}
+        scene = {**NOISE, "transfer_function": transfer}
+        for scheme, options in (("cell_cubic", {}), ("order1", {"step": 0.5}), ("order1", {"step": 0.5, "table": {"size": 128}}),
+                                ("sampled_virtual_catmull_rom_3", {"step": 0.5}), ("trapezoid", {"step": 0.5}), ("order2", {})):
+            with self.subTest(scheme=scheme, **options):
+                _, whole = self.render({**scene, "scheme": scheme, **options})
+                _, skipped = self.render({**scene, "scheme": scheme, **options, "empty_space": {"block": 2, "bounds": "corrected"}})
+                self.assertLess(abs(whole - skipped).max(), 1e-6)
+
+    def test_early_termination_ends_rays(self):
+        opaque = changed(NOISE, "/transfer_function/points/1/extinction", 20)
+        for scheme, options in (("cell_cubic", {}), ("order1", {"step": 0.5}), ("order1", {"step": 0.5, "table": {"size": 64}}),
+                                ("riemann_left", {"step": 0.5})):
+            with self.subTest(scheme=scheme, **options):
+                _, whole = self.render({**opaque, "scheme": scheme, **options})
+                _, ended = self.render({**opaque, "scheme": scheme, **options, "early_termination": 0.5})
+                self.assertTrue((ended <= whole + 1e-6).all())
+                self.assertGreater(abs(whole - ended).max(), 1e-3)
+                self.assertGreaterEqual(ended[whole[..., 3] > 0.5][:, 3].min(), 0.5 - 1e-6)
+
+
+class Refusals(ProgramTest):
+    bad = [
+        ("/volume", "nowhere", "nowhere"),
+        ("/volume/size/0", 0, "whole number"),
+        ("/volume/size/0", 5e9, "2^33"),
+        ("/volume/values/0", "x", "number"),
+        ("/volume/spacing", [1, 1, 0], "> 0"),
+        ("/camera/size", [70000, 1], "65536"),
+        ("/camera/size", [65536, 65536], "2^28"),
+        ("/camera/fov_y", 30, "either"),
+        ("/camera/up", [0, 0, 1], "up"),
+        ("/camera/height", 0, "> 0"),
+        ("/scheme", "order4", "perhaps order"),
+        ("/step", -1, "> 0"),
+        ("/table", {"size": 64}, "order1"),
+        ("/shading", {"method": "quadratic_arc"}, "order1"),
+        ("/early_termination", 2, "1"),
+        ("/empty_space", {"bounds": "none"}, "corrected"),
+        ("/reconstruction", "cubic", "catmull_rom"),
+        ("/colour", 1, "colour"),
+        ("/transfer_function/points/0/s", 2, "sorted"),
+        ("/transfer_function", "no.json", "no.json"),
+    ]
+
+    def test_bad_scenes(self):
+        for pointer, value, words in self.bad:
+            with self.subTest(pointer=pointer, value=value):
+                scene = self.write("scene.json", changed(SCENE, pointer, value))
+                done = self.run_program("render", scene, "-o", "image.npy")
+                self.assert_refused(done, "scene.json", words)
+        self.assertEqual(self.names_in_folder(), ["scene.json"])
+
+    def test_what_schemes_refuse(self):
+        for scheme in ("virtual_catmull_rom", "sampled_virtual_catmull_rom_3"):  # they need equal steps
+            done = self.run_program("render", self.write("s.json", {**SCENE, "scheme": scheme}), "-o", "i.npy")
+            self.assert_refused(done, "s.json", "/scheme", scheme)
+        done = self.run_program("render", self.write("s.json", {**SCENE, "scheme": "cell_cubic", "reconstruction": "bspline"}), "-o", "i.npy")
+        self.assert_refused(done, "trilinear")
+
+    def test_bad_images(self):
+        self.assert_refused(self.run_program("render", self.write("s.json", SCENE), "-o", "i.jpg"), ".png")
+        self.assert_refused(self.run_program("render", "s.json", "-o", "no/i.npy"), "no/i.npy")
+        self.assert_refused(self.run_program("render", "absent.json", "-o", "i.npy"), "absent.json")
+        self.assert_refused(self.run_program("render", self.write("s.json", b"{"), "-o", "i.npy"), "s.json")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,178 @@
+"""`raytruth table`: files that other programs read, with a measured error beside them, or a refusal and no file."""
+
+import ast
+import json
+import math
+import struct
+import unittest
+
+import jsonschema
+
+from support import SOURCE, ProgramTest, changed
+
+try:
+    import numpy
+except ImportError:
+    numpy = None
+
+OPTICS = [{"s": s, "extinction": 2, "color": [1, 0.5, 0.25]} for s in (0, 255)]
+CASE = {
+    "transfer_function": {"points": OPTICS},
+    "emission": "associated",
+    "builder": "exact",
+    "size": 8,
+    "length": 1,
+    "range": [0, 255],
+    "format": "float32",
+}
+RAMP = changed(CASE, "/transfer_function/points/0", {"s": 0, "extinction": 0, "color": [0, 0, 1]})
+PARABOLAS = changed(changed(CASE, "/builder", "second_order_iterations"), "/iterations", 16)
+PSI = {"builder": "partial_pre_integration", "size": 16}
+OPACITY = 1 - math.exp(-2)
+SLAB = [OPACITY, 0.5 * OPACITY, 0.25 * OPACITY, OPACITY]
+
+SCHEMAS = [json.loads((SOURCE / f"experiments/schemas/{name}.json").read_text()) for name in ("table", "case")]
+
+
+def schema_accepts(case):
+    resolver = jsonschema.RefResolver.from_schema(SCHEMAS[0], store={schema["$id"]: schema for schema in SCHEMAS})
+    return jsonschema.Draft202012Validator(SCHEMAS[0], resolver=resolver).is_valid(case)
+
+
+class TableTest(ProgramTest):
+    def make(self, case, name="table.npy"):
+        """The table's file, and what stands beside it."""
+        self.output_of("table", self.write("case.json", case), "-o", name)
+        self.assertTrue(schema_accepts(case))
+        return self.folder / name, json.loads((self.folder / f"{name}.json").read_text())
+
+
+class Files(TableTest):
+    def test_a_constant_transfer_function_in_npy_by_hand(self):
+        file, beside = self.make(CASE)
+        data = file.read_bytes()
+        self.assertEqual(data[:8], b"\x93NUMPY\x01\x00")
+        (length,) = struct.unpack("<H", data[8:10])
+        self.assertEqual((10 + length) % 64, 0)
+        header = ast.literal_eval(data[10 : 10 + length].decode().strip())
+        self.assertEqual(header, {"descr": "<f4", "fortran_order": False, "shape": (8, 8, 4)})
+        values = struct.unpack("<256f", data[10 + length :])
+        for i, value in enumerate(values):
+            self.assertAlmostEqual(value, SLAB[i % 4], delta=1e-7)
+        self.assertLess(beside["error"]["max"], 1e-7)
+        self.assertEqual(beside["shape"], [8, 8, 4])
+
+    def test_nrrd(self):
+        file, _ = self.make(CASE, "table.nrrd")
+        header, _, data = file.read_bytes().partition(b"\n\n")
+        self.assertEqual(
+            header.decode().splitlines(),
+            ["NRRD0004", "type: float", "dimension: 3", "sizes: 4 8 8", "endian: little", "encoding: raw"],
+        )
+        for i, (value,) in enumerate(struct.iter_unpack("<f", data)):
+            self.assertAlmostEqual(value, SLAB[i % 4], delta=1e-7)
+
+    @unittest.skipIf(numpy is None, "numpy (Debian: python3-numpy) is not installed")
+    def test_numpy_reads_every_format(self):
+        truth = numpy.load(self.make(changed(RAMP, "/format", "float64"))[0])
+        for name, dtype, scale, error in (
+            ("float32", "<f4", 1, 2**-25),
+            ("float16", "<f2", 1, 2**-12),
+            ("unorm16", "<u2", 65535, 0.5 / 65535),
+            ("unorm8", "|u1", 255, 0.5 / 255),
+        ):
+            table = numpy.load(self.make(changed(RAMP, "/format", name))[0])
+            self.assertEqual((table.dtype.str, table.shape), (dtype, (8, 8, 4)))
+            self.assertLessEqual(abs(table.astype(float) / scale - truth).max(), error + 1e-9, name)
+
+    @unittest.skipIf(numpy is None, "numpy (Debian: python3-numpy) is not installed")
+    def test_the_front_scalar_varies_faster_than_the_back_one(self):
+        """Under a ramp the slab from low to high scalars shows its blue front more than the one from high to low."""
+        table = numpy.load(self.make(RAMP)[0])
+        self.assertGreater(table[7, 0, 2], table[0, 7, 2])
+        self.assertAlmostEqual(table[7, 0, 3], table[0, 7, 3], places=6)
+
+    @unittest.skipIf(numpy is None, "numpy (Debian: python3-numpy) is not installed")
+    def test_tables_of_second_order_and_of_psi(self):
+        for builder in ("second_order_iterations", "second_order_nyquist", "second_order_exact"):
+            case = changed(PARABOLAS, "/builder", builder)
+            file, beside = self.make(case if "iterations" in builder else changed(case, "/iterations", ...))
+            table = numpy.load(file)
+            self.assertEqual(table.shape, (8, 8, 8, 4))
+            self.assertLess(abs(table - SLAB).max(), 1e-6)
+            self.assertLess(beside["error"]["max"], 1e-6)
+        file, beside = self.make(PSI)
+        psi = numpy.load(file)
+        self.assertEqual(psi.shape, (16, 16))
+        self.assertEqual((psi[0, 0], psi[15, 15]), (1, 0))
+        self.assertLess(beside["error"]["max"], 0.1)
+
+    def test_the_error_is_that_of_the_builder(self):
+        """Without attenuation a constant slab sends out its depth times its colour: 2 (1, 1/2, 1/4)."""
+        _, beside = self.make(changed(CASE, "/builder", "no_attenuation"))
+        self.assertAlmostEqual(beside["error"]["max"], 2 - OPACITY, delta=1e-7)
+
+    def test_what_has_no_certified_counterpart_says_so(self):
+        _, beside = self.make(changed(CASE, "/builder", "moment_1"))
+        self.assertIsNone(beside["error"])
+        self.assertIn("certified", beside["why"])
+
+    def test_every_builder_of_the_catalogue(self):
+        names = [entry["name"] for entry in self.json_of("list", "tables", "--json")]
+        self.assertEqual(SCHEMAS[0]["$defs"]["builder"]["enum"], names)
+        for name in names:
+            self.make(changed(CASE, "/builder", name))
+
+    def test_the_same_bytes_on_any_number_of_threads(self):
+        case = self.write("case.json", RAMP)
+        for threads in "12":
+            self.output_of("table", case, "-j", threads, "-o", f"{threads}.npy")
+        self.assertEqual(*((self.folder / f"{threads}.npy").read_bytes() for threads in "12"))
+
+
+class Refusals(TableTest):
+    bad = [
+        (changed(CASE, "/size", 1), "/size", "2"),
+        (changed(CASE, "/size", 4097), "/size", "4096"),
+        (changed(PARABOLAS, "/size", 257), "/size", "256"),
+        (changed(CASE, "/length", 0), "/length", "> 0"),
+        (changed(CASE, "/range", [1, 1]), "/range", "ascending"),
+        (changed(CASE, "/range", [0]), "/range", "2"),
+        (changed(CASE, "/range", ...), "/range", ""),
+        (changed(CASE, "/builder", "exakt"), "/builder", "perhaps exact"),
+        (changed(CASE, "/format", "float8"), "/format", "float16"),
+        (changed(CASE, "/emission", "both"), "/emission", "plain"),
+        (changed(CASE, "/iterations", 8), "/iterations", ""),
+        (changed(PARABOLAS, "/iterations", ...), "/iterations", ""),
+        (changed(PARABOLAS, "/iterations", 0), "/iterations", "1"),
+        (changed(CASE, "/unknown", 1), "/unknown", ""),
+        (changed(PSI, "/length", 1), "/length", ""),
+        (changed(CASE, "/transfer_function/points/0/extinction", -1), "/transfer_function/points/0/extinction", "0"),
+    ]
+
+    def test_bad_cases(self):
+        only_program = {"ascending"}  # what no schema can say
+        for case, pointer, words in self.bad:
+            with self.subTest(pointer=pointer, words=words):
+                done = self.run_program("table", self.write("case.json", case), "-o", "bad.npy")
+                self.assert_refused(done, f"case.json: {pointer}", words)
+                self.assertEqual(self.names_in_folder(), ["case.json"])
+                self.assertEqual(schema_accepts(case), words in only_program)
+
+    def test_files_of_other_kinds_and_places(self):
+        case = self.write("case.json", CASE)
+        for name, words in (("table.png", ".npy and .nrrd"), ("table", ".npy and .nrrd"), ("no/folder.npy", "written")):
+            self.assert_refused(self.run_program("table", case, "-o", name), words)
+        self.write("case.json", changed(CASE, "/format", "float16"))
+        self.assert_refused(self.run_program("table", case, "-o", "half.nrrd"), "case.json: /format", "NRRD")
+        self.assertEqual(self.names_in_folder(), ["case.json"])
+
+    def test_numbers_above_1_in_fixed_point_are_told(self):
+        case = changed(changed(CASE, "/builder", "no_attenuation"), "/format", "unorm8")
+        done = self.run_program("table", self.write("case.json", case), "-o", "clamped.npy")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(b"64 numbers above 1", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
