@@ -10,10 +10,10 @@ namespace {
 
 constexpr double of_virtual_samples = 1.0 / 8;  // Lee 2010, eq. 8
 constexpr double longest_chord = std::numbers::sqrt3;
-// How far the tensor product of Catmull-Rom cubics leaves its voxels' range, in units of that.
-constexpr double of_catmull_rom = (1.25 * 1.25 * 1.25 - 1) / 2;
 
 }  // namespace
+
+double field_overshoot(FieldKind field) { return field == FieldKind::catmull_rom ? (1.25 * 1.25 * 1.25 - 1) / 2 : 0; }
 
 BlockRefinement block_refinement(const Scene& scene, BlockBounds bounds) {
   switch (bounds) {
@@ -22,7 +22,7 @@ BlockRefinement block_refinement(const Scene& scene, BlockBounds bounds) {
     case BlockBounds::printed:
       return {.overshoot = of_virtual_samples};
     default:
-      const double of_field = scene.field == FieldKind::catmull_rom ? of_catmull_rom : 0;
+      const double of_field = field_overshoot(scene.field);
       return {.growth = proven_growth(BlockRegion::cells, scene.step.value_or(longest_chord)),
               .overshoot = of_field + of_virtual_samples * (1 + 2 * of_field)};
   }

@@ -11,7 +11,7 @@ namespace raytruth {
 struct PngPixels {
   std::array<std::int64_t, 2> size{};  ///< width and height
   int largest = 255;                   ///< 255, or 65535
-  std::vector<std::uint16_t> channels;
+  std::vector<std::uint16_t> channels = {};
 };
 
 /// Throws InputError, without a place, for what is no whole PNG image and for more than `largest_side` pixels along a

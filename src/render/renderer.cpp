@@ -2,8 +2,8 @@
 
 #include "catalogue.hpp"
 #include "core/error.hpp"
-#include "measures/overshoot.hpp"
 #include "reference/ray_integral.hpp"
+#include "render/block_refinement.hpp"
 #include "render/cell_march.hpp"
 #include "render/table_march.hpp"
 #include "schemes/scheme_integral.hpp"
@@ -19,7 +19,6 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
-#include <numbers>
 #include <utility>
 
 namespace raytruth {
@@ -28,8 +27,6 @@ namespace {
 
 constexpr std::int64_t tile_side = 16;
 constexpr double farthest = 0x1p30;  // voxels
-// How far the tensor product of Catmull-Rom cubics leaves its voxels' range, in units of that.
-constexpr double catmull_rom_overshoot = (1.25 * 1.25 * 1.25 - 1) / 2;
 
 struct PixelLight {
   Eigen::Array4d light = Eigen::Array4d::Zero();
@@ -237,22 +234,6 @@ CubicKernel kernel_of(FieldKind kind) {
   return kind == FieldKind::catmull_rom ? CubicKernel::catmull_rom : CubicKernel::bspline;
 }
 
-/// How far samples of the field reach beyond a block, and how far the field leaves the range of its voxels.
-BlockRefinement refinement_of(const Scene& scene, BlockBounds bounds) {
-  constexpr double virtual_samples = 1.0 / 8;  // Lee 2010, eq. 8
-  constexpr double longest_chord = std::numbers::sqrt3;
-  switch (bounds) {
-    case BlockBounds::unrefined:
-      return {};
-    case BlockBounds::printed:
-      return {.overshoot = virtual_samples};
-    default:
-      const double of_field = scene.field == FieldKind::catmull_rom ? catmull_rom_overshoot : 0;
-      return {.growth = proven_growth(BlockRegion::cells, scene.step.value_or(longest_chord)),
-              .overshoot = of_field + virtual_samples * (1 + 2 * of_field)};
-  }
-}
-
 /// More than what a displacement by 10^-9 of a voxel changes in a field: no cubic kernel has a derivative above 16/3
 /// per axis and unit of the voxels' range. And more than a chain's rounding, some units in the last place of its
 /// voxels.
@@ -264,7 +245,7 @@ double margin_of(const Grid& grid) {
 /// Blocks that hold for every point of every ray.
 OccupiedBlocks certain_blocks(const Scene& scene, const Grid& grid) {
   const std::int64_t growth = scene.field == FieldKind::trilinear ? 0 : 1;
-  const double overshoot = scene.field == FieldKind::catmull_rom ? catmull_rom_overshoot : 0;
+  const double overshoot = field_overshoot(scene.field);
   return {grid,
           ClearScalars(scene.transfer, scene.emission),
           8,
@@ -334,7 +315,7 @@ struct Renderer::Parts {
     }
     if (scene.empty_space)
       blocks.emplace(field.grid, ClearScalars(scene.transfer, scene.emission), scene.empty_space->block,
-                     refinement_of(scene, scene.empty_space->bounds));
+                     block_refinement(scene, scene.empty_space->bounds));
     const OccupiedBlocks* const occupied = blocks ? &*blocks : nullptr;
     if (scene.table) return choose_table(field, occupied);
     if (scene.shading) {

@@ -1,3 +1,4 @@
+#include "core/random.hpp"
 #include "shading/slab_reference.hpp"
 #include "shading/slab_shading.hpp"
 #include "study/measure.hpp"
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -126,22 +128,34 @@ constexpr Input lowest{-270, -270, 0, 0};
 
 Input highest(const Options& options) { return {270, 270, 90, options.largest_depth}; }
 
-/// Steps along each axis, and along both angles in the plane at once, as long as that helps, then halves the steps: no
-/// derivatives, which kinks and jumps do not have.
+/// Along the axes, along both angles in the plane at once, then along random ones, in every round others: they follow
+/// ridges.
+Input direction(std::uint64_t round, std::uint64_t index) {
+  constexpr std::array<Input, 5> first{{{1, 0, 0, 0}, {0, 1, 0, 0}, {1, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+  if (index < first.size()) return first[index];
+  Input result = random_numbers(round, RandomStream::cases, index);
+  for (double& component : result) component = 2 * component - 1;
+  return result;
+}
+
+/// Steps as long as that helps, then halves them: no derivatives, which kinks and jumps do not have.
 Found climb_once(const Search& search, const Input& high, Found best) {
   constexpr int halvings = 24;
-  constexpr std::array<Input, 5> directions{{{1, 0, 0, 0}, {0, 1, 0, 0}, {1, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+  constexpr std::uint64_t directions = 24;
+  constexpr double least_step_gain = 1e-9;  // or rounding would never end
   double step = 1.0 / 16;
-  for (int halving = 0; halving < halvings;) {
+  std::uint64_t round = 0;
+  for (int halving = 0; halving < halvings; ++round) {
     bool is_better = false;
-    for (const Input& direction : directions)
+    for (std::uint64_t i = 0; i < directions; ++i)
       for (const double signed_step : {-step, step}) {
+        const Input along = direction(round, i);
         Input input = best.input;
         for (std::size_t axis = 0; axis < input.size(); ++axis)
-          input[axis] = std::clamp(input[axis] + signed_step * direction[axis] * (high[axis] - lowest[axis]),
-                                   lowest[axis], high[axis]);
+          input[axis] = std::clamp(input[axis] + signed_step * along[axis] * (high[axis] - lowest[axis]), lowest[axis],
+                                   high[axis]);
         const double here = excess(search, input);
-        if (!(here > best.excess)) continue;
+        if (!(here > best.excess + least_step_gain)) continue;
         best = {here, input};
         is_better = true;
       }
@@ -249,7 +263,7 @@ std::vector<Column> clamps_columns(const Experiment& /*experiment*/, const JsonR
            "of negative values of the quadratic arc: clamped, mirrored or left at every point; Guetat's three "
            "cases with fades, as corrected, with I'', and as printed",
        .is_key = true},
-      {.name = "side", .unit = "", .description = "the largest over- or underestimate", .is_key = true},
+      {.name = "side", .unit = "", .description = "the largest over- or underestimate found", .is_key = true},
       {.name = "error",
        .unit = "",
        .description = "treatment - clamped reference, of the light of a slab that faces the light",

@@ -44,18 +44,20 @@ struct Variant {
   Json scene = {};                               ///< as the experiment says it
 };
 
-/// The images that a result holds, with their errors, the latter so many times as bright.
+/// What a result holds to be looked at: variants' images, and their errors, so many times as bright.
 struct Pictures {
   std::vector<std::string> views;
-  std::vector<std::string> variants;
+  std::vector<std::string> images;
+  std::vector<std::string> errors;
+  std::string against;
   double gain = 1;
 };
 
 struct Options {
   std::vector<View> views;
   std::vector<Variant> variants;
-  std::vector<std::string> against;     ///< variants that others are compared with, beside the certified image
-  std::optional<std::string> baseline;  ///< the variant that others are to be better than
+  std::vector<std::string> against;    ///< variants that others are compared with, beside the certified image
+  std::vector<std::string> baselines;  ///< variants that others are to be better than
   Pictures pictures;
 };
 
@@ -121,7 +123,7 @@ Variant read_variant(const JsonReader& json) {
 }
 
 Options read_options(const Experiment& experiment, const JsonReader& json) {
-  json.only({"kind", "size", "views", "variants", "against", "baseline", "pictures"});
+  json.only({"kind", "size", "views", "variants", "against", "baselines", "pictures"});
   need_transfers(experiment);
   Options options;
   const auto size = read_image_size(json.at("size"));
@@ -137,13 +139,15 @@ Options read_options(const Experiment& experiment, const JsonReader& json) {
   }
   auto variants = names_of(options.variants);
   if (const auto against = json.find("against")) options.against = read_words(*against, variants);
-  if (const auto baseline = json.find("baseline")) options.baseline = baseline->word(variants);
+  if (const auto baselines = json.find("baselines")) options.baselines = read_words(*baselines, variants);
   if (const auto pictures = json.find("pictures")) {
-    pictures->only({"views", "variants", "gain"});
+    pictures->only({"views", "images", "errors", "against", "gain"});
+    options.pictures.views = read_words(pictures->at("views"), names_of(options.views));
+    options.pictures.errors = read_words(pictures->at("errors"), variants);
+    options.pictures.gain = pictures->at("gain").number(1, largest_gain);
     variants.push_back(certified);
-    options.pictures = {.views = read_words(pictures->at("views"), names_of(options.views)),
-                        .variants = read_words(pictures->at("variants"), variants),
-                        .gain = pictures->at("gain").number(1, largest_gain)};
+    options.pictures.images = read_words(pictures->at("images"), variants);
+    options.pictures.against = pictures->at("against").word(variants);
   }
   return options;
 }
@@ -209,6 +213,9 @@ const Variant* coarser(const std::vector<Variant>& variants, const Variant& vari
   return nullptr;
 }
 
+/// The column of what a variant is better by than a baseline.
+std::string gain_over(const std::string& baseline) { return "gain_over_" + baseline; }
+
 /// A variant's image of a view.
 struct Rendered {
   const Variant* variant;
@@ -266,7 +273,8 @@ class ViewRows {
     return found == images_.end() ? nullptr : &*found;
   }
 
-  [[nodiscard]] const Rendered* image_of(const std::optional<std::string>& name) const {
+  /// Null for the certified image.
+  [[nodiscard]] const Rendered* image_of(const std::string& name) const {
     const auto found =
         std::find_if(images_.begin(), images_.end(), [&](const Rendered& item) { return item.variant->name == name; });
     return found == images_.end() ? nullptr : &*found;
@@ -316,8 +324,9 @@ class ViewRows {
       row.emplace_back("radius", radii > 0 ? *std::max_element(truth_.radii.begin(), truth_.radii.end()) : 0.0);
     if (const double coarse = rmse_of(image_of(coarser(options_.variants, variant))); coarse > 0 && error.rmse > 0)
       row.emplace_back("order", std::log2(coarse / error.rmse));
-    if (const double base = rmse_of(image_of(options_.baseline)); base > 0 && error.rmse > 0)
-      row.emplace_back("psnr_gain", 20 * std::log10(base / error.rmse));
+    for (const std::string& name : options_.baselines)
+      if (const double base = rmse_of(image_of(name)); base > 0 && error.rmse > 0)
+        row.emplace_back(gain_over(name), 20 * std::log10(base / error.rmse));
     return row;
   }
 
@@ -340,22 +349,26 @@ class ViewRows {
   }
 
   void add_pictures() {
-    const auto& [views, variants, gain] = options_.pictures;
+    const auto& [views, images, errors, against, gain] = options_.pictures;
     if (std::find(views.begin(), views.end(), view_.name) == views.end()) return;
-    for (const std::string& name : variants) {
+    const auto pixels_of = [this](const std::string& name) -> const Image& {
       const Rendered* const rendered = image_of(name);
-      const Image& image = rendered != nullptr ? rendered->image : truth_.image;
-      const PngPixels stored = png_of(image);
-      for (std::int64_t line = 0; line < image.size[1]; ++line) {
+      return rendered != nullptr ? rendered->image : truth_.image;
+    };
+    const std::int64_t lines = truth_.image.size[1];
+    for (const std::string& name : images) {
+      const PngPixels stored = png_of(pixels_of(name));
+      for (std::int64_t line = 0; line < lines; ++line) {
         Row& row = add(name, {});
         row.insert(row.end(), {{"line", line}, {"pixels", color_text(stored, line)}});
       }
-      if (rendered == nullptr) continue;
-      for (std::int64_t line = 0; line < image.size[1]; ++line) {
-        Row& row = add(name, std::string(certified));
-        row.insert(row.end(), {{"line", line}, {"pixels", error_text(image, truth_.image, gain, line)}});
-      }
     }
+    for (const std::string& name : errors)
+      for (std::int64_t line = 0; line < lines; ++line) {
+        Row& row = add(name, against);
+        row.insert(row.end(),
+                   {{"line", line}, {"pixels", error_text(pixels_of(name), pixels_of(against), gain, line)}});
+      }
   }
 
   const Options& options_;
@@ -368,8 +381,8 @@ class ViewRows {
 }  // namespace
 
 std::vector<Column> images_columns(const Experiment& experiment, const JsonReader& options) {
-  read_options(experiment, options);
-  return {
+  const Options asked = read_options(experiment, options);
+  std::vector<Column> columns{
       {.name = "view", .unit = "", .description = "what is looked at", .is_key = true},
       {.name = "transfer", .unit = "", .description = "its transfer function", .is_key = true},
       {.name = "variant",
@@ -409,7 +422,6 @@ std::vector<Column> images_columns(const Experiment& experiment, const JsonReade
        .unit = "",
        .description = "log2 of the RMSE, against the same, of the variant with twice the step or half the table, over "
                       "this one's"},
-      {.name = "psnr_gain", .unit = "dB", .description = "psnr minus that of the baseline, against the same"},
       {.name = "not_converged", .unit = "", .description = "pixels whose radius is wider than was asked for"},
       {.name = "mean_opacity", .unit = "", .description = "of the certified image's pixels"},
       {.name = "slabs",
@@ -426,6 +438,11 @@ std::vector<Column> images_columns(const Experiment& experiment, const JsonReade
        .description = "of the line, two hexadecimal digits each: of an image red, green and blue in 8-bit sRGB; of a "
                       "comparison 255 times the gain times the largest error of a channel"},
   };
+  for (const std::string& name : asked.baselines)
+    columns.push_back({.name = gain_over(name),
+                       .unit = "dB",
+                       .description = fmt::format("psnr minus that of {}, against the same", name)});
+  return columns;
 }
 
 std::vector<Row> images_rows(const Experiment& experiment, const JsonReader& json, const Field& field) {

@@ -102,12 +102,11 @@ def show_legend(axes, handles):
 
 
 def share_legend(figure, all_axes, width):
-    """One legend for the figure where all panels have the same: its handles and number of columns, else none."""
-    legends = [axes.get_legend() for axes in all_axes]
-    if None in legends:
-        return None, 0
+    """One legend for the figure where all panels that have one have the same: its handles and number of columns, else
+    none."""
+    legends = [legend for legend in (axes.get_legend() for axes in all_axes) if legend is not None]
     keys = [[(line.get_label(), line.get_color(), line.get_marker()) for line in legend.get_lines()] for legend in legends]
-    if len(legends) == 1 or any(key != keys[0] for key in keys):
+    if len(legends) <= 1 or any(key != keys[0] for key in keys):
         return None, 0
     handles = legends[0].get_lines()
     for legend in legends:
