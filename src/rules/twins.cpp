@@ -208,6 +208,13 @@ std::vector<Twin> make_twins() {
     const std::array<float, 6> arguments{front, hump, -hump, skew, front, front + skew};
     std::copy(arguments.begin(), arguments.end(), numbers.begin());
   };
+  Twin fades_highlight_twin = lighting_twin(twin(
+                                                "fades_highlight", [](auto r) { return &decltype(r)::fades_highlight; },
+                                                {signals, unit, signals, projection, projection}, sum),
+                                            5);
+  fades_highlight_twin.reconcile = [hump = fades_peak_twin.reconcile](std::span<float> numbers) {
+    hump(numbers.subspan(5));
+  };
   return {
       sum_twin(
           "order0", [](auto r) { return &decltype(r)::order0; }, {signal}, exact),
@@ -340,10 +347,7 @@ std::vector<Twin> make_twins() {
                         {signals, signals, projection, projection}, sum),
                     4),
       fades_peak_twin,
-      lighting_twin(twin(
-                        "fades_highlight", [](auto r) { return &decltype(r)::fades_highlight; },
-                        {signals, unit, signals, projection, projection}, sum),
-                    5),
+      fades_highlight_twin,
       lighting_twin(twin(
                         "fades_highlight_printed", [](auto r) { return &decltype(r)::fades_highlight_printed; },
                         {signals, signals, signals, projection, projection, shininess, projection, projection}, sum),
