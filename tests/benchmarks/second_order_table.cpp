@@ -42,6 +42,15 @@ double for_each_entry(Table3<float>& table, const Entry& entry) {
   return static_cast<double>(table.values.back());
 }
 
+/// Through the three scalars of an entry at t = 0, 1/2 and 1.
+struct Parabola {
+  float a, b, front;
+
+  Parabola(float its_front, float middle, float back)
+      : a(2 * its_front - 4 * middle + 2 * back), b(-3 * its_front + 4 * middle - back), front(its_front) {}
+  float operator()(float t) const { return (a * t + b) * t + front; }
+};
+
 double plain_loop(const PiecewiseLinear& transfer, Table3<float>& table, int iterations) {
   const std::size_t n = table.axes.size;
   std::vector<std::array<float, 4>> corrected(n);
@@ -54,12 +63,11 @@ double plain_loop(const PiecewiseLinear& transfer, Table3<float>& table, int ite
   }
   const float last = static_cast<float>(n - 1);
   return for_each_entry(table, [&](float front, float middle, float back, float* texel) {
-    const float a = 2 * front - 4 * middle + 2 * back;
-    const float b = -3 * front + 4 * middle - back;
     std::array<float, 4> slab{};
+    const Parabola parabola(front, middle, back);
     for (int k = 0; k < iterations; ++k) {
-      const float t = (static_cast<float>(k) + 0.5F) / static_cast<float>(iterations);
-      const float at = std::min(std::max((a * t + b) * t + front, 0.0F), last);
+      const float at =
+          std::min(std::max(parabola((static_cast<float>(k) + 0.5F) / static_cast<float>(iterations)), 0.0F), last);
       const auto& step = corrected[static_cast<std::size_t>(static_cast<int>(at + 0.5F))];
       const float transmittance = 1 - slab[3];
       for (std::size_t c = 0; c < 4; ++c) slab[c] += transmittance * step[c];
@@ -80,12 +88,11 @@ double same_numbers(const PiecewiseLinear& transfer, Table3<float>& table, int i
   const float last = static_cast<float>(n - 1);
   const float step = static_cast<float>(table.axes.length) / static_cast<float>(iterations);
   return for_each_entry(table, [&](float front, float middle, float back, float* texel) {
-    const float a = 2 * front - 4 * middle + 2 * back;
-    const float b = -3 * front + 4 * middle - back;
     std::array<float, 4> slab{};
+    const Parabola parabola(front, middle, back);
     for (int k = 0; k < iterations; ++k) {
-      const float t = (static_cast<float>(k) + 0.5F) / static_cast<float>(iterations);
-      const float at = std::min(std::max((a * t + b) * t + front, 0.0F), last);
+      const float at =
+          std::min(std::max(parabola((static_cast<float>(k) + 0.5F) / static_cast<float>(iterations)), 0.0F), last);
       const auto first = static_cast<std::size_t>(static_cast<int>(at));
       const float weight = at - static_cast<float>(first);
       std::array<float, 4> optics;
