@@ -33,7 +33,8 @@ void add_roots(const Function& f, std::vector<double>& roots) {
     xs[i] = static_cast<double>(i) / scan_cells;
     values[i] = f(xs[i]);
   }
-  // A pair of roots between two points hides next to an extreme, which the scan shows unless it is in an end cell.
+  // A pair of roots between two points hides next to an extreme: three points of the scan show it, or, in an end cell,
+  // the slope at the end.
   std::vector<double> points = xs;
   const auto add_extreme = [&](double sign, double low, double high) {
     constexpr int bits = std::numeric_limits<double>::digits / 2;
@@ -45,10 +46,12 @@ void add_roots(const Function& f, std::vector<double>& roots) {
     const double behind = values[i + 1] - values[i];
     if (before * behind < 0) add_extreme(before > 0 ? -1 : 1, xs[i - 1], xs[i + 1]);
   }
-  for (const double sign : {-1.0, 1.0}) {
-    add_extreme(sign, xs[0], xs[1]);
-    add_extreme(sign, xs[scan_cells - 1], xs[scan_cells]);
-  }
+  constexpr double little = 0x1p-20;
+  const double at_front = f(little) - values.front();
+  const double at_back = values.back() - f(1 - little);
+  if (at_front * (values[1] - values[0]) < 0) add_extreme(at_front > 0 ? -1 : 1, xs[0], xs[1]);
+  if (at_back * (values[scan_cells] - values[scan_cells - 1]) < 0)
+    add_extreme(at_back > 0 ? 1 : -1, xs[scan_cells - 1], xs[scan_cells]);
   std::sort(points.begin(), points.end());
   for (std::size_t i = 1; i < points.size(); ++i) {
     const double low = f(points[i - 1]);
