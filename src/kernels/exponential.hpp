@@ -2,19 +2,27 @@
 
 #include "kernels/lanes.hpp"
 
+#include <array>
+#include <cstddef>
+
 namespace raytruth::inline RAYTRUTH_LEVEL {
 
 /// Half the distance from 1 to the next binary64 number: the relative error of one operation.
 inline constexpr double unit_roundoff = 0x1p-53;
 
+/// g_0 ... g_9 of e^r = 1 + (r + r^2 g(r)) for |r| <= 0.3466: Remez's exchange for the error relative to e^r, which
+/// with these coefficients, rounded, is at most 0.1 units of 2^-53 (a test computes it).
+inline constexpr std::array<double, 10> exponential_coefficients{
+    0x1.000000000000ap-1,  0x1.55555555554fap-3,  0x1.5555555550880p-5,  0x1.1111111127bd4p-7,  0x1.6c16c18429335p-10,
+    0x1.a01a012a5c042p-13, 0x1.a0199a0ee7035p-16, 0x1.71df254c77156p-19, 0x1.28ad706015ad7p-22, 0x1.ad7f71e4d6022p-26};
+
 /// |exponential(y) - e^y| <= exponential_error e^y for -700 <= y <= 700.
 ///
 /// Proof, in units of 2^-53. With n the integer next to y log2(e), r = y - n ln 2 and |r| <= 0.3466: ln 2 = high + low,
-/// n high is exact, the two subtractions err by 0.3466 each, so r errs by 0.7, and e^r by as much of itself. Taylor's
-/// polynomial 1 + (r + r^2 g) of degree 13 leaves out 0.3466^14 / 14! = 0.04. g errs by 4 of itself (sums of terms that
-/// shrink by 3 and more), r^2 g by 6, at most 0.41; r + r^2 g then by 0.41 + 0.42 for r > 0, 0.33 + 0.3 for r < 0, and
-/// the last sum by 1 of itself. Relative to e^r, at least 0.707 for r < 0: 1.9 together. The sum, 0.7 + 0.04 + 1.9, is
-/// below 3; 2^n is exact.
+/// n high is exact, the two subtractions err by 0.3466 each, so r errs by 0.7, and e^r by as much of itself. The
+/// polynomial leaves out 0.1. g errs by 4 of itself (sums of terms that shrink by 3 and more), r^2 g by 6, at most
+/// 0.41; r + r^2 g then by 0.41 + 0.42 for r > 0, 0.33 + 0.3 for r < 0, and the last sum by 1 of itself. Relative to
+/// e^r, at least 0.707 for r < 0: 1.9 together. The sum, 0.7 + 0.1 + 1.9, is below 3; 2^n is exact.
 inline constexpr double exponential_error = 3 * unit_roundoff;
 
 /// e^y for every lane (or for one number); y below -700 counts as -700. No table and no branch; Estrin's scheme, since
@@ -31,13 +39,11 @@ Vector exponential(const Vector& y) {
   const Vector r = multiply_add(n, Vector(-ln2_low), multiply_add(n, Vector(-ln2_high), clamped));
   const Vector r2 = r * r;
   const Vector r4 = r2 * r2;
-  const auto four_terms = [&](double g0, double g1, double g2, double g3) {
-    return multiply_add(r2, multiply_add(r, Vector(g3), Vector(g2)), multiply_add(r, Vector(g1), Vector(g0)));
+  const auto two_terms = [&](std::size_t k) {
+    return multiply_add(r, Vector(exponential_coefficients[k + 1]), Vector(exponential_coefficients[k]));
   };
-  const Vector g_high = four_terms(1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800);
-  const Vector g_middle = four_terms(1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880);
-  const Vector g =
-      multiply_add(r4, multiply_add(r4, g_high, g_middle), four_terms(1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120));
+  const auto four_terms = [&](std::size_t k) { return multiply_add(r2, two_terms(k + 2), two_terms(k)); };
+  const Vector g = multiply_add(r4, multiply_add(r4, two_terms(8), four_terms(4)), four_terms(0));
   const Vector e_to_r = 1.0 + multiply_add(r2, g, r);
   return from_bits(to_bits(e_to_r) + (to_bits(shifted) << 52));
 }
@@ -48,6 +54,13 @@ template <class Vector>
 Vector log2_above(const Vector& x) {
   constexpr std::int64_t two_to_52 = 0x4330000000000000;
   return ((from_bits((to_bits(x) >> 12) | two_to_52) - 0x1p52) * 0x1p-40 - 1023.0) + 0.0862;
+}
+
+/// A number not below 2^y (but for rounding, 2^-39 of it) and at most 1.07 times that, for y < 1024; y below -1000
+/// counts as -1000. The chord of the power between two integers.
+template <class Vector>
+Vector power_of_2_above(const Vector& y) {
+  return from_bits(to_bits((larger<Vector>(-1000, y) + 1023.0) * 0x1p40 + 0x1p52) << 12);
 }
 
 }  // namespace raytruth::inline RAYTRUTH_LEVEL

@@ -6,6 +6,7 @@
 
 #include <boost/math/special_functions/legendre.hpp>
 
+#include <atomic>
 #include <mutex>
 
 namespace raytruth {
@@ -71,9 +72,16 @@ NodeTable<Degree> make_table(std::size_t count) {
 
 template <int Degree>
 const NodeTable<Degree>& node_table(std::size_t count) {
-  static std::array<std::once_flag, most_nodes + 1> is_made;
+  // Not std::call_once: whoever integrates one piece would wait for it as long as for two nodes.
+  static std::array<std::atomic<const NodeTable<Degree>*>, most_nodes + 1> made{};
+  if (const auto* table = made[count].load(std::memory_order_acquire)) return *table;
+  static std::mutex mutex;
   static std::array<NodeTable<Degree>, most_nodes + 1> tables;
-  std::call_once(is_made[count], [count] { tables[count] = make_table<Degree>(count); });
+  const std::lock_guard lock(mutex);
+  if (tables[count].count == 0) {
+    tables[count] = make_table<Degree>(count);
+    made[count].store(&tables[count], std::memory_order_release);
+  }
   return tables[count];
 }
 

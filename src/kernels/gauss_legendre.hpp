@@ -7,7 +7,7 @@
 namespace raytruth {
 
 /// The most nodes of a rule; a piece that needs more is halved.
-inline constexpr std::size_t most_nodes = 32;
+inline constexpr std::size_t most_nodes = 40;
 
 /// The Gauss-Legendre rule of `count` nodes on [0, 1], with what polynomials in Bernstein form need at its nodes. Every
 /// number is the binary64 number nearest to the exact one. Rows are padded to full lanes with nodes of weight 0.

@@ -35,6 +35,7 @@ struct alignas(8 * lane_count) Lanes {
   Vector vector{};
 
   Lanes() = default;
+  Lanes(const Vector& lanes) : vector(lanes) {}  // NOLINT(google-explicit-constructor)
   // Implicit, so that one template serves Lanes and double: the same number in all lanes.
   Lanes(double x) : vector(x - Vector{}) {}  // NOLINT(google-explicit-constructor)
 
@@ -127,12 +128,21 @@ inline bool any(const LaneBits& which) {
   return (bits[0] | bits[1]) != 0;
 }
 
-inline double sum(const Lanes& x) { return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7])); }
+/// All lanes in one, by halves.
+template <class Combine>
+double combined(const Lanes& x, const Combine& combine) {
+  const auto& v = x.vector;
+  const Lanes four = combine(x, Lanes{__builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3)});
+  const Lanes two = combine(four, Lanes{__builtin_shufflevector(four.vector, four.vector, 2, 3, 0, 1, 6, 7, 4, 5)});
+  return combine(two[0], two[1]);
+}
+
+inline double sum(const Lanes& x) {
+  return combined(x, [](const auto& a, const auto& b) { return a + b; });
+}
 
 inline double largest(const Lanes& x) {
-  double result = x[0];
-  for (std::size_t lane = 1; lane < lane_count; ++lane) result = larger(result, x[lane]);
-  return result;
+  return combined(x, [](const auto& a, const auto& b) { return larger(a, b); });
 }
 inline double largest(double x) { return x; }
 
