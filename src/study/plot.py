@@ -72,13 +72,18 @@ def floor_of(values):
 
 
 def styled_series(result, rows, key):
-    """(name, style) of each series: schemes first, as the catalogue orders and styles them."""
+    """(name, style) of each series: schemes first, as the catalogue orders and styles them. A name looks the same in
+    all panels of the figure."""
+    panels = [panel for panel in result["experiment"]["plot"]["panels"] if panel.get("series") == key]
+    everywhere = list(dict.fromkeys(name for panel in panels for name in distinct(select(result["rows"], panel["rows"]), key)))
+    ordered = [name for name in result["styles"] if name in everywhere]
+    ordered += [name for name in everywhere if name not in ordered]
     present = distinct(rows, key)
-    schemes = [name for name in result["styles"] if name in present]
-    for index, name in enumerate(schemes + [name for name in present if name not in schemes]):
+    for index, name in enumerate(ordered):
         own = {"color": COLORS[index % len(COLORS)], "marker": MARKERS[index % len(MARKERS)]}
         scheme = {part: value for part, value in result["styles"].get(name, {}).items() if part in own}
-        yield name, {**own, **scheme, "linestyle": DASHES[index % len(DASHES)]}
+        if name in present:
+            yield name, {**own, **scheme, "linestyle": DASHES[index % len(DASHES)]}
 
 
 def draw_marker(axes, x, y, style, filled):
