@@ -54,6 +54,10 @@ dt { opacity: .75; } dd { margin: 0; overflow-wrap: anywhere; }
 summary { cursor: pointer; }
 .plot { overflow-x: auto; background: #fff; border-radius: 6px; padding: .5rem; margin-top: .4rem; }
 .plot svg { display: block; width: 100%; height: auto; min-width: 26rem; }
+@media (max-width: 40rem) {
+  h1 { font-size: 1.3rem; } table { font-size: .85rem; } th, td { padding: .2rem .25rem; }
+  thead th:not(:first-child) { writing-mode: vertical-rl; transform: rotate(180deg); }
+}
 </style>
 </head>
 <body>
