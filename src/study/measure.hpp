@@ -155,6 +155,9 @@ std::vector<Row> shading_integrals_rows(const Experiment& experiment, const Json
 std::vector<Column> images_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> images_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
+std::vector<Column> costs_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> costs_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
 inline constexpr std::array measures{
     Measure{"signal_error", "xi and xi_max of every scheme along random rays: quantiles, and ratios between schemes",
             true, signal_error_columns, signal_error_rows},
@@ -234,6 +237,8 @@ inline constexpr std::array measures{
             table_pareto_columns, table_pareto_rows},
     Measure{"images", "views of volumes in many ways, against the certified image and each other", true, images_columns,
             images_rows},
+    Measure{"costs", "ratios of times that the benchmarks' reports hold, each of one run", false, costs_columns,
+            costs_rows},
 };
 
 /// The measure that an item of an experiment's "measures" names. Throws InputError.
