@@ -58,11 +58,12 @@ std::vector<Row> rows_of(const fs::path& file, const std::vector<std::string>& c
     const auto aggregate = entry.find("aggregate_name");
     if (!aggregate) continue;
     const std::string name = plain_name(entry);
-    if (!benchmarks.contains(name)) order.push_back(name);
+    const auto [benchmark, is_new] = benchmarks.try_emplace(name);
+    if (is_new) order.push_back(name);
     for (const std::string& counter : counters)
       if (const auto value = entry.find(counter)) {
-        if (aggregate->json() == "median") benchmarks[name][counter].median = value->number();
-        if (aggregate->json() == "stddev") benchmarks[name][counter].deviation = value->number();
+        if (aggregate->json() == "median") benchmark->second[counter].median = value->number();
+        if (aggregate->json() == "stddev") benchmark->second[counter].deviation = value->number();
       }
   }
 
