@@ -2,6 +2,7 @@
 #include "measures/ray_ensemble.hpp"
 #include "measures/slab_extremes.hpp"
 #include "measures/statistics.hpp"
+#include "shading/highlight.hpp"
 #include "shading/normal_curve.hpp"
 #include "study/measure.hpp"
 #include "study/quantile_columns.hpp"
@@ -73,13 +74,35 @@ RayAngles angles_along(const Grid& grid, const GradientFilter& filter, const Ray
   return result;
 }
 
-/// The largest error of N.L over the slab and over all directions of the light; none where the curve is singular.
-Value largest_diffuse_error(std::string_view curve_name, double angle) {
+/// An error that follows from the normals by a curve and by the linear interpolation, normalised, at a point of a slab.
+struct NormalError {
+  std::string_view name;
+  std::string_view description;
+  double (*error)(const PlaneVector<double>& normal, const PlaneVector<double>& reference);
+};
+
+double lobe_on_bisector(const PlaneVector<double>& normal) {
+  constexpr double shininess = 20;
+  return catalogue::find_highlight("lobe")->value(normal.bisector, shininess);
+}
+
+constexpr std::array normal_errors{
+    NormalError{"error", "largest error of N.L over the slab and all lights (eta: distance_linear_max)",
+                between<double>},
+    NormalError{"lobe_error",
+                "largest error over the slab of a lobe with n = 20 whose half vector is on the normals' bisector "
+                "(slab_shading: error_max)",
+                [](const PlaneVector<double>& normal, const PlaneVector<double>& reference) {
+                  return std::abs(lobe_on_bisector(normal) - lobe_on_bisector(reference));
+                }}};
+
+/// Over the slab; none where the curve is singular.
+Value largest_error(const NormalError& of, std::string_view curve_name, double angle) {
   const double cosine = std::cos(angle * boost::math::constants::pi<double>() / 180);
   const NormalCurve& curve = *catalogue::find_normal_curve(curve_name);
   const NormalCurve& reference = *catalogue::find_normal_curve("normalized_linear");
   const double error = largest_over_slab<double>([&](double s) {
-                         return between(normal_at(curve, s, cosine), normal_at(reference, s, cosine));
+                         return of.error(normal_at(curve, s, cosine), normal_at(reference, s, cosine));
                        }).second;
   return std::isfinite(error) ? Value(error) : Value();
 }
@@ -106,14 +129,13 @@ std::vector<Column> gradient_angles_columns(const Experiment& experiment, const 
          {.name = fmt::format("above_{}_high", angle), .unit = "", .description = "95 % interval, clustered by ray"}});
   append(columns, quantile_columns("angle", "degree", "angle between the normals of two consecutive samples"));
   append(columns, {{.name = "angle_max", .unit = "degree", .description = "largest of these angles"}});
-  for (const std::string_view curve : curves)
-    for (const int percent : error_percents)
-      columns.push_back(
-          {.name = fmt::format("{}_error_p{}", curve, percent),
-           .unit = "",
-           .description = fmt::format("largest error of N.L by {} at angle_p{}, over the slab and all lights "
-                                      "(eta: distance_linear_max); null: singular",
-                                      curve, percent)});
+  for (const NormalError& of : normal_errors)
+    for (const std::string_view curve : curves)
+      for (const int percent : error_percents)
+        columns.push_back(
+            {.name = fmt::format("{}_{}_p{}", curve, of.name, percent),
+             .unit = "",
+             .description = fmt::format("by {} at angle_p{}: {}; null: singular", curve, percent, of.description)});
   return columns;
 }
 
@@ -151,10 +173,11 @@ std::vector<Row> gradient_angles_rows(const Experiment& experiment, const JsonRe
       std::sort(angles.begin(), angles.end());
       add_quantiles(row, "angle", angles);
       row.emplace_back("angle_max", angles.back());
-      for (const std::string_view curve : curves)
-        for (const int percent : error_percents)
-          row.emplace_back(fmt::format("{}_error_p{}", curve, percent),
-                           largest_diffuse_error(curve, quantile(angles, percent / 100.0)));
+      for (const NormalError& of : normal_errors)
+        for (const std::string_view curve : curves)
+          for (const int percent : error_percents)
+            row.emplace_back(fmt::format("{}_{}_p{}", curve, of.name, percent),
+                             largest_error(of, curve, quantile(angles, percent / 100.0)));
     }
   return rows;
 }
