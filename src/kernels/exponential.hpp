@@ -33,7 +33,7 @@ Vector exponential(const Vector& y) {
   constexpr double ln2_high = 0x1.62e42feep-1;  // 32 bits: its product with n is exact
   constexpr double ln2_low = 0x1.a39ef35793c76p-33;
   constexpr double round_to_integer = 0x1.8p52;  // adding it leaves the integer in the low bits
-  const Vector clamped = larger<Vector>(-700, y);
+  const auto clamped = larger<Vector>(-700, y);
   const Vector shifted = multiply_add(clamped, Vector(log2_e), Vector(round_to_integer));
   const Vector n = shifted - round_to_integer;
   const Vector r = multiply_add(n, Vector(-ln2_low), multiply_add(n, Vector(-ln2_high), clamped));

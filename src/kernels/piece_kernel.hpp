@@ -187,7 +187,7 @@ Vector nodes_for(const LinearPiece<Degree, Vector>& piece, const Prepared<Degree
     kappa[0] -= depth_uncertainty;
   }
 
-  Vector nodes = Vector(1e9);
+  auto nodes = Vector(1e9);
   const Vector kappa_1 = magnitude(kappa[1]);
   const Vector ratio = kappa_1 / (4 * kappa[2]);
   for (const Ellipse<Degree>& ellipse : pair) {
@@ -237,7 +237,7 @@ PieceIntegral<Vector> finish(const LinearPiece<Degree, Vector>& piece, const Pre
                              const Vector& log2_truncation) {
   constexpr double unit = unit_roundoff;
   const Vector zero{};
-  const Vector one = Vector(1);
+  const auto one = Vector(1);
   const Vector whole = prepared.depth[Degree + 1];
   const auto& [reach, slope, below, depth_below, extinction, depth, depth_from_x] = prepared;
 

@@ -191,7 +191,7 @@ template <int Degree>
     const Lanes share = (target - value_at_begin) * per_value;
     const Lanes rest = 1 - share;
     const Lanes guess = share * (at_begin * rest * rest + share * (rest * (3 - at_end) + share));
-    Lanes u = smaller<Lanes>(larger<Lanes>(begin + (end - begin) * guess, begin), end);
+    auto u = smaller<Lanes>(larger<Lanes>(begin + (end - begin) * guess, begin), end);
     for (int step = 0; step < most_steps; ++step) {
       const auto [value, slope] = value_and_slope(u);
       const Lanes newton = u - (value - target) / (slope + tiny);

@@ -16,7 +16,7 @@ class Box {
   [[nodiscard]] acb_ptr get() { return z_; }
 
  private:
-  acb_t z_;
+  acb_t z_{};
 };
 
 /// p(z) for a box z: Taylor's form about its centre is much narrower than Horner's on wide boxes.

@@ -121,7 +121,7 @@ class Ball {
     return result;
   }
 
-  arb_t x_;
+  arb_t x_{};
 };
 
 /// A polynomial in x with balls as coefficients, in ascending powers. It stands for any function whose value at every x
@@ -232,7 +232,7 @@ class Polynomial {
     return result;
   }
 
-  arb_poly_t p_;
+  arb_poly_t p_{};
 };
 
 }  // namespace raytruth::arb

@@ -203,9 +203,10 @@ Image read_npy(const std::filesystem::path& file, const std::string& bytes) {
     shape.remove_prefix(std::min(comma + 1, shape.size()));
     while (word.starts_with(' ')) word.remove_prefix(1);
     if (word.empty()) continue;
-    const auto size = number_in<std::int64_t>(word);
-    if (!size) refuse_header("a shape that is no list of whole numbers");
-    sizes.push_back(*size);
+    if (const auto size = number_in<std::int64_t>(word))
+      sizes.push_back(*size);
+    else
+      refuse_header("a shape that is no list of whole numbers");
   }
   if (sizes.size() == 2) sizes.push_back(1);
   if (sizes.size() != 3 || (sizes[2] != 1 && sizes[2] != 3 && sizes[2] != 4)) refuse_header("another shape");

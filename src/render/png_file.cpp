@@ -87,8 +87,8 @@ struct Writer {
 PngPixels read_png(const std::string& bytes, std::int64_t largest_side, std::int64_t most_pixels) {
   Stream stream{.bytes = bytes};
   Reader reader(stream);
-  const png_structp png = reader.png;
-  const png_infop info = reader.info;
+  png_struct* const png = reader.png;
+  png_info* const info = reader.info;
   attempt(png, stream, [&] {
     png_set_user_limits(png, static_cast<png_uint_32>(largest_side), static_cast<png_uint_32>(largest_side));
     png_read_info(png, info);
@@ -125,8 +125,8 @@ PngPixels read_png(const std::string& bytes, std::int64_t largest_side, std::int
 std::string write_png(const std::vector<unsigned char>& pixels, const std::array<std::int64_t, 2>& size, bool is_srgb) {
   Stream stream;
   Writer writer(stream);
-  const png_structp png = writer.png;
-  const png_infop info = writer.info;
+  png_struct* const png = writer.png;
+  png_info* const info = writer.info;
   attempt(png, stream, [&] {
     png_set_IHDR(png, info, static_cast<png_uint_32>(size[0]), static_cast<png_uint_32>(size[1]), 8, PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);

@@ -17,12 +17,12 @@ namespace raytruth {
 class SlabOptics {
  public:
   struct Stretch {
-    double begin;  ///< x
-    double end;
+    double begin = 0;  ///< x
+    double end = 0;
     Optics front;
     Optics back;
-    double depth;             ///< optical depth in front of it
-    double extinction_slope;  ///< d tau / ds
+    double depth = 0;             ///< optical depth in front of it
+    double extinction_slope = 0;  ///< d tau / ds
   };
 
   SlabOptics(const PiecewiseLinear& transfer, double front, double back, double length);
