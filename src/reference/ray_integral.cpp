@@ -21,29 +21,6 @@ constexpr double shortest = 0x1p-45;    // in a piece's unit coordinate
 constexpr int most_refinements = 400;   // of one piece
 constexpr std::size_t pieces_at_once = 256;
 
-/// The abscissae in (0, 1) between which the polynomial is monotone.
-template <int Degree>
-SignChanges<double, Degree> turning_points(const Bernstein<Degree>& polynomial) {
-  const auto slope = polynomial.derivative();
-  const auto& d = slope.coefficients;
-  const auto [least, most] = std::minmax_element(d.begin(), d.end());
-  SignChanges<double, Degree> result;
-  if (*least >= 0 || *most <= 0) return result;
-  if constexpr (Degree == 3) {
-    // d_0 (1-u)^2 + 2 d_1 u (1-u) + d_2 u^2, with v = u / (1-u): d_2 v^2 + 2 d_1 v + d_0 = 0.
-    const double discriminant = d[1] * d[1] - d[0] * d[2];
-    if (!(discriminant > 0)) return result;
-    const double q = -(d[1] + std::copysign(std::sqrt(discriminant), d[1]));
-    std::array roots{q / (q + d[2]), d[0] / (d[0] + q)};  // v = q / d_2 and v = d_0 / q
-    std::sort(roots.begin(), roots.end());
-    for (const double u : roots)
-      if (u > 0 && u < 1) result.push_back(u);
-  } else {
-    for (const double u : slope.sign_changes()) result.push_back(u);
-  }
-  return result;
-}
-
 /// How wrong an interval's linear functions are on a stretch that leaves it: by how much at most, and on what share.
 struct Outside {
   double share = 0;
@@ -110,62 +87,6 @@ struct RayIntegral::Sum {
 RayIntegral::RayIntegral(const PiecewiseLinear& transfer, Emission emission)
     : intervals_(transfer), emission_(emission) {}
 
-/// Appends the stretches of one piece, front to back.
-template <int Degree>
-void RayIntegral::split(const Bernstein<Degree>& polynomial, std::size_t piece, Buffers<Degree>& buffers) const {
-  const auto& knots = intervals_.knots();
-  const auto& b = polynomial.coefficients;
-  // The right-hand value counts: a constant at a knot belongs to the interval above.
-  const auto at_or_below = [&](double s) {
-    return static_cast<std::size_t>(std::upper_bound(knots.begin(), knots.end(), s) - knots.begin());
-  };
-  const auto below = [&](double s) {
-    return static_cast<std::size_t>(std::lower_bound(knots.begin(), knots.end(), s) - knots.begin());
-  };
-  const auto [least, most] = std::minmax_element(b.begin(), b.end());
-  const std::size_t lowest = at_or_below(*least);
-  if (lowest == knots.size() || *most <= knots[lowest]) {
-    buffers.stretches.push_back({piece, 0, 1, lowest});
-    return;
-  }
-
-  double begin = 0;
-  std::size_t interval = lowest;
-  double part_begin = 0;
-  double value = b.front();
-  const auto part = [&](double part_end, double value_at_end) {
-    const bool ascends = value < value_at_end;
-    const std::size_t first = ascends ? at_or_below(value) : below(value);
-    const std::size_t last = ascends ? below(value_at_end) : at_or_below(value_at_end);
-    if (begin == part_begin) interval = first;
-    buffers.targets.clear();
-    // Crossing knot k upwards leads into interval k + 1, downwards into interval k.
-    if (ascends)
-      for (std::size_t k = first; k < last; ++k) buffers.targets.push_back(knots[k]);
-    else
-      for (std::size_t k = first; k-- > last;) buffers.targets.push_back(knots[k]);
-    if (!buffers.targets.empty()) {
-      buffers.abscissae.resize(buffers.targets.size());
-      kernels<Degree>().crossings(b, part_begin, part_end, buffers.targets.data(), buffers.targets.size(),
-                                  intervals_.has_jumps(), buffers.abscissae.data());
-      std::size_t here = first;
-      for (const double abscissa : buffers.abscissae) {
-        if (abscissa > begin) {
-          buffers.stretches.push_back({piece, begin, abscissa, here});
-          begin = abscissa;
-        }
-        here = ascends ? here + 1 : here - 1;
-      }
-      interval = here;
-    }
-    part_begin = part_end;
-    value = value_at_end;
-  };
-  for (const double u : turning_points(polynomial)) part(u, polynomial.value(u));
-  part(1, b.back());
-  if (begin < 1) buffers.stretches.push_back({piece, begin, 1, interval});
-}
-
 namespace {
 
 template <int Degree>
@@ -205,13 +126,13 @@ void RayIntegral::fit(const Chain<Degree>& signal, const SignalError& error, Buf
   for (std::size_t first = 0; first < stretches.size(); first += lane_count) {
     const std::size_t used = std::min(lane_count, stretches.size() - first);
     for (std::size_t lane = 0; lane < lane_count; ++lane) {
-      const Stretch& stretch = stretches[first + std::min(lane, used - 1)];
+      const KnotStretch& stretch = stretches[first + std::min(lane, used - 1)];
       set_stretch(eight, lane, signal.pieces[stretch.piece].polynomial, error_of(stretch.piece), stretch.begin,
                   stretch.end, intervals_[stretch.interval]);
     }
     const auto normalised = kernels<Degree>().normalise(eight);
     for (std::size_t lane = 0; lane < used; ++lane) {
-      const Stretch& stretch = stretches[first + lane];
+      const KnotStretch& stretch = stretches[first + lane];
       int budget = most_refinements;
       accept_or_halve(signal.pieces[stretch.piece], error_of(stretch.piece), stretch, normalised, lane, budget,
                       buffers);
@@ -221,7 +142,7 @@ void RayIntegral::fit(const Chain<Degree>& signal, const SignalError& error, Buf
 
 /// Appends a stretch that is inside its interval but for what its errors cover; else its two halves.
 template <int Degree>
-void RayIntegral::accept_or_halve(const Piece<Degree>& piece, double signal_error, const Stretch& stretch,
+void RayIntegral::accept_or_halve(const Piece<Degree>& piece, double signal_error, const KnotStretch& stretch,
                                   const NormalisedStretches<Degree>& normalised, std::size_t lane, int& budget,
                                   Buffers<Degree>& buffers) const {
   const LinearInterval& interval = intervals_[stretch.interval];
@@ -238,7 +159,7 @@ void RayIntegral::accept_or_halve(const Piece<Degree>& piece, double signal_erro
       const double value = piece.polynomial.value(begin + (end - begin) / 2);
       const auto& knots = intervals_.knots();
       const auto above = std::upper_bound(knots.begin(), knots.end(), value);
-      const Stretch half{stretch.piece, begin, end, static_cast<std::size_t>(above - knots.begin())};
+      const KnotStretch half{stretch.piece, begin, end, static_cast<std::size_t>(above - knots.begin())};
       Stretches<Degree> eight;
       set_stretch(eight, 0, piece.polynomial, signal_error, begin, end, intervals_[half.interval]);
       accept_or_halve(piece, signal_error, half, kernels<Degree>().normalise(eight), 0, budget, buffers);
@@ -364,7 +285,7 @@ Certified RayIntegral::operator()(const Chain<Degree>& signal, const SignalError
   Sum sum;
   double hidden = 0;  // length behind what is opaque
   for (std::size_t piece = 0; piece < signal.pieces.size(); ++piece) {
-    split(signal.pieces[piece].polynomial, piece, buffers);
+    cut_(intervals_, signal.pieces[piece].polynomial, piece, buffers.stretches);
     const bool is_last = piece + 1 == signal.pieces.size();
     if (buffers.stretches.size() < pieces_at_once && !is_last) continue;
     fit(signal, error, buffers);

@@ -3,6 +3,7 @@
 #include "core/chain.hpp"
 #include "kernels/kernels.hpp"
 #include "reference/certified.hpp"
+#include "reference/knot_cut.hpp"
 #include "reference/linear_interval.hpp"
 #include "transfer/piecewise_linear.hpp"
 
@@ -33,34 +34,22 @@ class RayIntegral {
   Certified operator()(const Chain<Degree>& signal, const SignalError& error = {}, double tolerance = 1e-13);
 
  private:
-  /// Part of a polynomial piece on which the scalar stays in one interval, or nearly.
-  struct Stretch {
-    std::size_t piece;
-    double begin;  ///< in the piece's unit coordinate
-    double end;
-    std::size_t interval;
-  };
-
   template <int Degree>
   struct Buffers {
-    std::vector<Stretch> stretches;
+    std::vector<KnotStretch> stretches;
     std::vector<LinearPiece<Degree, Eight>> pieces;  ///< the first `count` lanes are in use
     std::vector<PieceIntegral<Eight>> integrals;
     std::vector<std::size_t> intervals;
     std::vector<double> depth_errors;  ///< by what the scalar does outside its interval
     std::vector<double> color_errors;
-    std::vector<double> targets;
-    std::vector<double> abscissae;
   };
 
   struct Sum;
 
   template <int Degree>
-  void split(const Bernstein<Degree>& polynomial, std::size_t piece, Buffers<Degree>& buffers) const;
-  template <int Degree>
   void fit(const Chain<Degree>& signal, const SignalError& error, Buffers<Degree>& buffers) const;
   template <int Degree>
-  void accept_or_halve(const Piece<Degree>& piece, double signal_error, const Stretch& stretch,
+  void accept_or_halve(const Piece<Degree>& piece, double signal_error, const KnotStretch& stretch,
                        const NormalisedStretches<Degree>& normalised, std::size_t lane, int& budget,
                        Buffers<Degree>& buffers) const;
   template <int Degree>
@@ -70,6 +59,7 @@ class RayIntegral {
 
   LinearIntervals intervals_;
   Emission emission_;
+  KnotCut cut_;
   std::tuple<Buffers<3>, Buffers<9>> buffers_;
 };
 

@@ -5,6 +5,9 @@
 #include "reference/ray_integral.hpp"
 #include "render/block_refinement.hpp"
 #include "render/cell_march.hpp"
+#include "render/pixel_light.hpp"
+#include "render/shaded_ray.hpp"
+#include "render/shaded_table.hpp"
 #include "render/table_march.hpp"
 #include "schemes/scheme_integral.hpp"
 #include "signals/cell_walk.hpp"
@@ -27,12 +30,6 @@ namespace {
 
 constexpr std::int64_t tile_side = 16;
 constexpr double farthest = 0x1p30;  // voxels
-
-struct PixelLight {
-  Eigen::Array4d light = Eigen::Array4d::Zero();
-  double radius = 0;
-  Status status = Status::converged;
-};
 
 /// What a thread renders pixels with.
 using PixelRenderer = std::function<PixelLight(const PixelRay&)>;
@@ -184,49 +181,90 @@ PixelRenderer scheme_renderer(const Field<Degree>& field, const Scene& scene, co
   };
 }
 
-/// Slabs of any length from a table made for the step: the opacity is corrected as if they were homogeneous.
+/// Of the slabs that a table holds.
+double table_length(const Scene& scene) { return scene.step.value_or(1); }
+
+/// Slabs of any length from a table made for the step: `slab_of(view, k, samples, share)` gives that of interval k, a
+/// share of the table's length, its opacity corrected as if it were homogeneous.
+template <int Degree, class MakeView, class SlabOf>
+PixelRenderer slab_renderer(const Field<Degree>& field, const Scene& scene, const OccupiedBlocks* blocks,
+                            const MakeView& make_view, const SlabOf& slab_of) {
+  return
+      [&field, &scene, make_view, slab_of, length = table_length(scene), parts_of = PartsOfRay(field.grid.size, blocks),
+       chain = Chain<Degree>(), samples = Samples<double>()](const PixelRay& pixel) mutable -> PixelLight {
+        const auto parts = parts_of(pixel.ray, pixel.length_unit);
+        if (parts && parts->empty()) return {};
+        field.trace(pixel.ray, chain);
+        scale_lengths(chain, pixel.length_unit);
+        take_samples(chain, scene.step, samples);
+        const Omissions omissions{.occupied = parts, .opaque = scene.opaque};
+        PixelLight result;
+        const auto view = make_view(pixel);
+        const std::size_t full = full_intervals(samples);
+        for (std::size_t k = 0; k < samples.interval_count() && result.light[3] < omissions.opaque; ++k) {
+          if (omissions.omit(static_cast<double>(samples.positions[k]), static_cast<double>(samples.positions[k + 1])))
+            continue;
+          const double share = samples.step && k < full ? 1 : samples.length_of(k) / length;
+          result.light = Rules<double>{}.over(result.light, slab_of(view, k, samples, share));
+        }
+        return result;
+      };
+}
+
 template <int Degree>
 PixelRenderer table_renderer(const Field<Degree>& field, const Scene& scene, const Table<double>& table,
                              const OccupiedBlocks* blocks) {
-  return [&field, &scene, parts_of = PartsOfRay(field.grid.size, blocks), chain = Chain<Degree>(),
-          samples = Samples<double>(), &table](const PixelRay& pixel) mutable -> PixelLight {
-    const auto parts = parts_of(pixel.ray, pixel.length_unit);
-    if (parts && parts->empty()) return {};
-    field.trace(pixel.ray, chain);
-    scale_lengths(chain, pixel.length_unit);
-    take_samples(chain, scene.step, samples);
-    const Omissions omissions{.occupied = parts, .opaque = scene.opaque};
-    Rules<double> rules;
+  const auto slab_of = [&scene, &table](int /*view*/, std::size_t k, const Samples<double>& samples, double share) {
     const auto texel = [&table](std::size_t front, std::size_t back) { return table.at(front, back); };
-    PixelLight result;
-    const std::size_t full = full_intervals(samples);
-    for (std::size_t k = 0; k < samples.interval_count() && result.light[3] < omissions.opaque; ++k) {
-      if (omissions.omit(static_cast<double>(samples.positions[k]), static_cast<double>(samples.positions[k + 1])))
-        continue;
-      const std::array scalars{samples.values[k], samples.values[k + 1]};
-      Eigen::Array4d slab = scene.table->filter == TableFilter::linear ? bilinear<double>(table.axes, texel, scalars)
-                                                                       : nearest<double>(table.axes, texel, scalars);
-      if (!samples.step || k >= full) {
-        const double share = samples.length_of(k) / table.axes.length;
-        slab = rules.opacity_corrected_slab(slab, rules.opacity_correction(slab[3], share), share);
-      }
-      result.light = rules.over(result.light, slab);
-    }
-    return result;
+    const std::array scalars{samples.values[k], samples.values[k + 1]};
+    const Eigen::Array4d slab = scene.table->filter == TableFilter::linear
+                                    ? bilinear<double>(table.axes, texel, scalars)
+                                    : nearest<double>(table.axes, texel, scalars);
+    Rules<double> rules;
+    return share == 1 ? slab : rules.opacity_corrected_slab(slab, rules.opacity_correction(slab[3], share), share);
   };
+  return slab_renderer(
+      field, scene, blocks, [](const PixelRay& /*pixel*/) { return 0; }, slab_of);
+}
+
+template <int Degree>
+PixelRenderer shaded_table_renderer(const Field<Degree>& field, const Scene& scene, const ShadedTable& table,
+                                    const OccupiedBlocks* blocks) {
+  const auto view_of = [&scene](const PixelRay& pixel) { return LitView(scene.grid, *scene.shading, pixel); };
+  const auto slab_of = [&scene, &table, clear = ClearScalars(scene.transfer, scene.emission)](
+                           const LitView& view, std::size_t k, const Samples<double>& samples, double share) {
+    const double front = samples.values[k];
+    const double back = samples.values[k + 1];
+    if (clear.contain(std::min(front, back), std::max(front, back))) return Eigen::Array4d(Eigen::Array4d::Zero());
+    const auto [shader, model] = view.slab_light(*scene.shading, static_cast<double>(samples.positions[k]),
+                                                 static_cast<double>(samples.positions[k + 1]));
+    return table(front, back, share, shader, model);
+  };
+  return slab_renderer(field, scene, blocks, view_of, slab_of);
 }
 
 template <int Degree>
 PixelRenderer shaded_renderer(const Field<Degree>& field, const Scene& scene, const OccupiedBlocks* blocks) {
   return [&field, &scene, parts_of = PartsOfRay(field.grid.size, blocks), chain = Chain<Degree>(),
-          samples = Samples<double>(), shaded = ShadedRay(scene.grid, scene.transfer, scene.emission, *scene.shading)](
-             const PixelRay& pixel) mutable -> PixelLight {
+          samples = Samples<double>(), shaded = ShadedRay<Degree>(scene)](const PixelRay& pixel) mutable -> PixelLight {
     const auto parts = parts_of(pixel.ray, pixel.length_unit);
     if (parts && parts->empty()) return {};
     field.trace(pixel.ray, chain);
     scale_lengths(chain, pixel.length_unit);
     take_samples(chain, scene.step, samples);
-    return {shaded(pixel, samples, {.occupied = parts, .opaque = scene.opaque})};
+    return shaded(pixel, chain, samples, {.occupied = parts, .opaque = scene.opaque});
+  };
+}
+
+/// The lit truth: as a scheme's rays, but whatever is skipped is clear for certain, and rays never end early.
+template <int Degree>
+PixelRenderer shaded_reference(const Field<Degree>& field, const Scene& scene, const OccupiedBlocks& blocks) {
+  return [&field, parts_of = PartsOfRay(field.grid.size, &blocks), chain = Chain<Degree>(),
+          shaded = ShadedRay<Degree>(scene)](const PixelRay& pixel) mutable -> PixelLight {
+    if (parts_of(pixel.ray)->empty()) return {};
+    field.trace(pixel.ray, chain);
+    scale_lengths(chain, pixel.length_unit);
+    return shaded(pixel, chain, {}, {});
   };
 }
 
@@ -252,17 +290,19 @@ OccupiedBlocks certain_blocks(const Scene& scene, const Grid& grid) {
           {.growth = growth, .overshoot = overshoot, .margin = margin_of(grid)}};
 }
 
+TableAxes table_axes(const Scene& scene) {
+  const auto [low, high] = scene.grid.range();
+  // A constant grid asks for one entry only.
+  return {.size = scene.table->size, .low = low, .high = low < high ? high : low + 1, .length = table_length(scene)};
+}
+
 Table<double> table_of(const Scene& scene) {
   const auto& builders = catalogue::table_builders();
   const auto builder = std::find_if(builders.begin(), builders.end(),
                                     [&](const TableBuilder& row) { return row.name == scene.table->builder; });
   if (builder == builders.end())
     throw InputError(fmt::format("table builder {}; one of the listed is allowed", scene.table->builder));
-  const auto [low, high] = scene.grid.range();
-  // A constant grid asks for one entry only.
-  const TableAxes axes{
-      .size = scene.table->size, .low = low, .high = low < high ? high : low + 1, .length = scene.step.value_or(1)};
-  return stored(scene.table->format, builder->make(scene.transfer, axes, scene.emission));
+  return stored(scene.table->format, builder->make(scene.transfer, table_axes(scene), scene.emission));
 }
 
 }  // namespace
@@ -303,11 +343,13 @@ struct Renderer::Parts {
 
   template <int Degree>
   void choose(const Field<Degree>& field) {
-    if (scene.shading && (scene.scheme != "order1" || scene.table))
-      throw InputError(fmt::format("scheme {}{} with shading; order1 without a table is allowed", scene.scheme,
-                                   scene.table ? " and a table" : ""));
     if (scene.scheme == "reference") {
       blocks.emplace(certain_blocks(scene, field.grid));
+      if (scene.shading) {
+        ShadedRay<Degree>{scene};  // refuses what it cannot light
+        make_renderer = [&field, this] { return shaded_reference(field, scene, *blocks); };
+        return;
+      }
       make_renderer = [&field, this] {
         return ReferenceRenderer<Degree>(field, scene, *blocks, margin_of(field.grid));
       };
@@ -318,14 +360,14 @@ struct Renderer::Parts {
                      block_refinement(scene, scene.empty_space->bounds));
     const OccupiedBlocks* const occupied = blocks ? &*blocks : nullptr;
     if (scene.table) return choose_table(field, occupied);
+    scheme = catalogue::find_integral_scheme(scene.scheme);
+    if (scheme == nullptr) throw InputError(fmt::format("scheme {}; one of the listed is allowed", scene.scheme));
     if (scene.shading) {
-      const std::string_view why = scene.shading->method->refusal(scene.shading->lighting);
-      if (!why.empty()) throw InputError(fmt::format("shading {}: {}", scene.shading->method->name, why));
+      ShadedRay<Degree>{scene};
+      refuse_unsuitable<Degree>();
       make_renderer = [&field, this, occupied] { return shaded_renderer(field, scene, occupied); };
       return;
     }
-    scheme = catalogue::find_integral_scheme(scene.scheme);
-    if (scheme == nullptr) throw InputError(fmt::format("scheme {}; one of the listed is allowed", scene.scheme));
     if (Degree == 3 && std::holds_alternative<CellCubic>(scheme->method)) {
       cell_march.emplace(scene.grid, scene.transfer, scene.emission, scene.opaque);
       make_renderer = [this, occupied] {
@@ -344,6 +386,12 @@ struct Renderer::Parts {
   void choose_table(const Field<Degree>& field, const OccupiedBlocks* occupied) {
     if (scene.scheme != "order1")
       throw InputError(fmt::format("scheme {} with a table; order1 is allowed", scene.scheme));
+    if (scene.shading) {
+      ShadedRay<Degree>{scene};
+      shaded_table.emplace(scene, table_axes(scene));
+      make_renderer = [&field, this, occupied] { return shaded_table_renderer(field, scene, *shaded_table, occupied); };
+      return;
+    }
     table = table_of(scene);
     if (Degree == 3 && scene.step) {
       table_march.emplace(scene.grid, *table, scene.table->filter, *scene.step, scene.opaque);
@@ -378,6 +426,7 @@ struct Renderer::Parts {
   std::optional<OccupiedBlocks> blocks;
   const IntegralScheme* scheme = nullptr;
   std::optional<Table<double>> table;
+  std::optional<ShadedTable> shaded_table;
   std::optional<TableMarch> table_march;
   std::optional<CellMarch> cell_march;
   std::function<PixelRenderer()> make_renderer;
@@ -388,9 +437,10 @@ Renderer::~Renderer() = default;
 
 Rendering Renderer::render(const std::function<void(std::size_t, std::size_t)>& progress) const {
   const auto [width, height] = parts_->scene.camera.size;
-  const bool is_certified = parts_->scene.scheme == "reference";
-  Rendering result{Image(parts_->scene.camera.size)};
-  if (is_certified) result.radii.resize(result.image.pixels.size());
+  const bool has_radii = parts_->scene.scheme == "reference";
+  Rendering result{.image = Image(parts_->scene.camera.size),
+                   .is_certified = has_radii && !parts_->scene.shading.has_value()};
+  if (has_radii) result.radii.resize(result.image.pixels.size());
   const std::int64_t columns = (width + tile_side - 1) / tile_side;
   const std::int64_t tiles = columns * ((height + tile_side - 1) / tile_side);
 
@@ -406,7 +456,7 @@ Rendering Renderer::render(const std::function<void(std::size_t, std::size_t)>& 
       for (std::int64_t column = left; column < std::min(left + tile_side, width); ++column) {
         const PixelLight pixel = light_of_pixel(parts_->view(column, row));
         result.image.at(column, row) = pixel.light;
-        if (is_certified) result.radii[static_cast<std::size_t>(row * width + column)] = pixel.radius;
+        if (has_radii) result.radii[static_cast<std::size_t>(row * width + column)] = pixel.radius;
         if (pixel.status != Status::converged) ++not_converged;
       }
     ++done;

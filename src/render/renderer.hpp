@@ -14,15 +14,18 @@ namespace raytruth {
 /// What a renderer makes of a scene.
 struct Rendering {
   Image image;
-  /// Of `reference`: in every pixel a bound on the error of each channel and of the opacity; else empty.
+  /// Of `reference`, in every pixel: a proven bound on the error of each channel and of the opacity if `is_certified`,
+  /// else the measured one, by how much two quadratures differ (LitIntegral). Of other schemes empty.
   std::vector<double> radii = {};
+  bool is_certified = false;
   std::int64_t not_converged = 0;  ///< pixels whose radius is wider than was asked for; it holds
 };
 
 /// Makes images of a scene: prepares it once, renders on all cores, the same bytes on any number of them.
 ///
 /// Schemes see the exact polynomials along the ray, sampled as the scene says. `reference` is the certified integral
-/// for the pixel's ray and length unit as rounded to binary64; it neither skips space nor ends early. Two schemes have
+/// for the pixel's ray and length unit as rounded to binary64; with shading it is converged, not certified (ShadedRay).
+/// It neither skips space nor ends early. Two schemes without shading have
 /// a way of their own through a trilinear grid: `order1` with a table and equal steps, in binary32 (TableMarch); and
 /// `cell_cubic` (CellMarch).
 class Renderer {

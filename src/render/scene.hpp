@@ -2,7 +2,9 @@
 
 #include "reference/certified.hpp"
 #include "render/occupied_blocks.hpp"
-#include "render/shaded_ray.hpp"
+#include "shading/gooch.hpp"
+#include "shading/lighting.hpp"
+#include "shading/slab_shading.hpp"
 #include "tables/look_up.hpp"
 #include "transfer/piecewise_linear.hpp"
 #include "volume/camera.hpp"
@@ -43,6 +45,15 @@ struct EmptySpace {
   BlockBounds bounds = BlockBounds::corrected;
 };
 
+/// How a scene is lit.
+struct SceneShading {
+  const Shading* method = nullptr;  ///< of catalogue::shadings(): the light inside a slab from the normals at its ends;
+                                    ///< null: every point has its own normal
+  Lighting lighting = {};  ///< `light` points to the light, in world coordinates; `half` is made for every pixel
+  std::optional<Gooch> gooch = {};  ///< instead of ambient, diffuse and specular light
+  bool is_along_gradient = false;   ///< whether normals are +grad s / |grad s|, not -grad s / |grad s|
+};
+
 /// An image to be made. Lengths are in smallest spacings of the grid: extinctions are per such a length, steps so long.
 struct Scene {
   Grid grid = {};
@@ -53,7 +64,7 @@ struct Scene {
   std::string scheme = "reference";  ///< this, or one of catalogue::integral_schemes
   std::optional<double> step = {};   ///< of samples; none: at cells' borders and midpoints
   std::optional<SceneTable> table = {};
-  std::optional<SceneShading> shading = {};                 ///< of the slabs of `order1`, without a table
+  std::optional<SceneShading> shading = {};
   double opaque = std::numeric_limits<double>::infinity();  ///< rays end where their opacity reaches this
   std::optional<EmptySpace> empty_space = {};
 };

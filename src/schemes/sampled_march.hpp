@@ -7,6 +7,7 @@
 #include "schemes/virtual_catmull_rom.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -37,14 +38,14 @@ struct SampledRay {
 
 /// Post-classification: front to back over the ray, every slab's colour and opacity from the optics of its samples.
 /// What a slab contributes stands in rules/{homogeneous,trapezoid,simpson,opacity_correction}.glsl; all of it, the
-/// look-ups too, is computed in Real.
-template <class Real>
+/// look-ups too, is computed in Real. `look_up(value, t)` gives emission density and extinction of a scalar at the
+/// place t of the ray.
+template <class Real, class LookUp>
 class SampledMarch {
  public:
   using vec4 = typename Rules<Real>::vec4;
 
-  SampledMarch(const Sampled& method, const OpticsLookup<Real>& look_up, const SampledRay<Real>& ray,
-               const Omissions& omissions)
+  SampledMarch(const Sampled& method, const LookUp& look_up, const SampledRay<Real>& ray, const Omissions& omissions)
       : method_(method),
         look_up_(look_up),
         ray_(ray),
@@ -72,13 +73,13 @@ class SampledMarch {
   std::size_t composite_from(std::size_t k) {
     switch (method_.rule) {
       case SampledRule::riemann_left:
-        composite_held(ray_.values[k], k);
+        composite_held(ray_.values[k], k, 0);
         return 1;
       case SampledRule::riemann_right:
-        composite_held(ray_.values[k + 1], k);
+        composite_held(ray_.values[k + 1], k, 1);
         return 1;
       case SampledRule::riemann_mid:
-        composite_held(ray_.middles[k], k);
+        composite_held(ray_.middles[k], k, 0.5);
         return 1;
       case SampledRule::trapezoid:
         composite_trapezoid(k);
@@ -92,8 +93,9 @@ class SampledMarch {
     return 1;
   }
 
-  void composite_held(const Real& value, std::size_t k) {
-    composite(rules_.homogeneous_slab(optics(value), ray_.widths[k], is_linear_));
+  /// The optics are those of this share of the interval.
+  void composite_held(const Real& value, std::size_t k, double share) {
+    composite(rules_.homogeneous_slab(optics(value, place(k, share)), ray_.widths[k], is_linear_));
   }
 
   void composite_trapezoid(std::size_t k) {
@@ -108,7 +110,7 @@ class SampledMarch {
       return 1;
     }
     const vec4 front = optics_of_front(k);
-    const vec4 middle = optics(ray_.values[k + 1]);
+    const vec4 middle = optics(ray_.values[k + 1], ray_.positions[k + 1]);
     look_up_last(k + 2);
     composite(rules_.simpson_slab(front, middle, last_, ray_.widths[k] + ray_.widths[k + 1], is_linear_));
     return 2;
@@ -120,7 +122,8 @@ class SampledMarch {
     const int parts = method_.virtual_samples + 1;
     for (int part = 0; part < parts; ++part) {
       const Real value = rules_.virtual_sample(curve, Real(part) / Real(parts));
-      const vec4 slab = rules_.homogeneous_slab(optics(value), ray_.widths[k], is_linear_);
+      const vec4 here = optics(value, place(k, static_cast<double>(part) / parts));
+      const vec4 slab = rules_.homogeneous_slab(here, ray_.widths[k], is_linear_);
       composite(rules_.opacity_corrected_slab(slab, corrected(slab[3], parts), Real(1) / Real(parts)));
     }
   }
@@ -132,16 +135,21 @@ class SampledMarch {
     return opacity;
   }
 
-  vec4 optics(const Real& value) {
+  /// Of the ray, a share of interval k behind its front.
+  [[nodiscard]] double place(std::size_t k, double share) const {
+    return std::lerp(ray_.positions[k], ray_.positions[k + 1], share);
+  }
+
+  vec4 optics(const Real& value, double t) {
     ++outcome_.lookups;
-    return look_up_(value);
+    return look_up_(value, t);
   }
 
   /// At sample k, which the slab before has looked up, unless it was left out.
-  vec4 optics_of_front(std::size_t k) { return last_sample_ == k ? last_ : optics(ray_.values[k]); }
+  vec4 optics_of_front(std::size_t k) { return last_sample_ == k ? last_ : optics(ray_.values[k], ray_.positions[k]); }
 
   void look_up_last(std::size_t k) {
-    last_ = optics(ray_.values[k]);
+    last_ = optics(ray_.values[k], ray_.positions[k]);
     last_sample_ = k;
   }
 
@@ -163,7 +171,7 @@ class SampledMarch {
   }
 
   const Sampled& method_;
-  const OpticsLookup<Real>& look_up_;
+  const LookUp& look_up_;
   const SampledRay<Real>& ray_;
   const Omissions& omissions_;
   bool is_linear_;
@@ -175,10 +183,16 @@ class SampledMarch {
 };
 
 /// The ray by a sampled scheme.
+template <class Real, class LookUp>
+Outcome<Real> march(const Sampled& method, const LookUp& look_up, const SampledRay<Real>& ray,
+                    const Omissions& omissions = {}) {
+  return SampledMarch<Real, LookUp>(method, look_up, ray, omissions)();
+}
 template <class Real>
 Outcome<Real> march(const Sampled& method, const OpticsLookup<Real>& look_up, const SampledRay<Real>& ray,
                     const Omissions& omissions = {}) {
-  return SampledMarch<Real>(method, look_up, ray, omissions)();
+  const auto anywhere = [&look_up](const Real& value, double /*t*/) { return look_up(value); };
+  return march(method, anywhere, ray, omissions);
 }
 
 }  // namespace raytruth

@@ -249,11 +249,28 @@ struct Sums {
   Ball depth;
 };
 
+/// b_i = sum over k <= i of binomial(i, k) / binomial(n, k) a_k.
+std::vector<Ball> bernstein_coefficients(const Polynomial& p) {
+  const slong n = std::max<slong>(p.size() - 1, 0);
+  std::vector<Ball> result;
+  for (slong i = 0; i <= n; ++i) {
+    Ball sum;
+    Ball share = 1.0;  // binomial(i, k) / binomial(n, k)
+    for (slong k = 0; k <= i && k < p.size(); ++k) {
+      sum += share * p.coefficient(k);
+      if (k < i) share = share * Ball(static_cast<double>(i - k)) / Ball(static_cast<double>(n - k));
+    }
+    result.push_back(sum);
+  }
+  return result;
+}
+
 class SlabSum {
  public:
-  SlabSum(const ShadedSlab& slab, const PiecewiseLinear& transfer, Emission emission, const Lighting& lighting,
-          Cosine light, Cosine half)
-      : slab_(slab),
+  SlabSum(Polynomial signal, double length, const PiecewiseLinear& transfer, Emission emission,
+          const Lighting& lighting, Cosine light, Cosine half)
+      : signal_(std::move(signal)),
+        length_(length),
         cut_(transfer),
         is_associated_(emission == Emission::associated),
         lighting_(lighting),
@@ -263,14 +280,14 @@ class SlabSum {
 
   CertifiedRadiance operator()(double tolerance) {
     const Ball brightest = cut_.largest_color(0.0);
-    const Ball light = is_associated_ ? max(1.0, brightest) : max(1.0, brightest) * Ball(slab_.length);
+    const Ball light = is_associated_ ? max(1.0, brightest) : max(1.0, brightest) * Ball(length_);
     const Ball cosines = max(1.0, max(largest(light_), largest(half_)));
     const Ball coefficients = max(1.0, Ball(lighting_.ambient) + Ball(lighting_.diffuse) + Ball(lighting_.specular));
     largest_light_ =
         max(1.0, light) * coefficients *
         power_of(max(1.0, Ball(1.0) + highlighting_.slope * (cosines - 1.0)) * cosines, highlighting_.power + 1);
-    if (slab_.length > 0) sum_up();
-    return rounded(tolerance, max(1.0, is_associated_ ? brightest : brightest * Ball(slab_.length)).upper_double());
+    if (length_ > 0) sum_up();
+    return rounded(tolerance, max(1.0, is_associated_ ? brightest : brightest * Ball(length_)).upper_double());
   }
 
  private:
@@ -328,11 +345,9 @@ class SlabSum {
     is_cut_short_ = is_cut_short_ || hidden() < Ball(0x1p-80);
     if (is_cut_short_) return;
     const PartShades shades = shades_of(begin, end, is_analytic);
-    const Polynomial whole = signal();
-    const bool is_constant = slab_.front == slab_.back;
-    Piece piece{.signal = is_constant ? whole : whole.restricted(begin, end), .control = {}, .length = end - begin};
-    piece.control.push_back(whole(begin));
-    if (!is_constant) piece.control.push_back(whole(end));
+    Piece piece{
+        .signal = signal_.size() <= 1 ? signal_ : signal_.restricted(begin, end), .control = {}, .length = end - begin};
+    piece.control = bernstein_coefficients(piece.signal);
     Ball reached = begin;
     cut_(piece, [&](const Stretch& stretch) {
       add_stretch(stretch, reached, shades);
@@ -340,15 +355,9 @@ class SlabSum {
     });
   }
 
-  [[nodiscard]] Polynomial signal() const {
-    Polynomial result{Ball(slab_.front)};
-    if (slab_.front != slab_.back) result.set(1, Ball(slab_.back) - Ball(slab_.front));
-    return result;
-  }
-
   /// `stretch` has its length in units of the slab's, and begins at x = `begin`.
   void add_stretch(const Stretch& stretch, const Ball& begin, const PartShades& shades) {
-    const Ball length = stretch.length * Ball(slab_.length);
+    const Ball length = stretch.length * Ball(length_);
     const Polynomial depth = length * stretch.extinction.antiderivative();
     const Ball total = depth(1.0);
     const Ball front = exp(-sums_.depth);
@@ -413,7 +422,8 @@ class SlabSum {
     return result;
   }
 
-  const ShadedSlab& slab_;
+  Polynomial signal_;  ///< in x
+  double length_;
   PointsCut cut_;
   bool is_associated_;
   const Lighting& lighting_;
@@ -438,6 +448,21 @@ Polynomial polynomial(std::initializer_list<Ball> coefficients) {
   return result;
 }
 
+/// From `front` at 0 to `back` at 1; equal ones make a constant.
+Polynomial linear(double front, double back) {
+  return front == back ? Polynomial(front) : polynomial({Ball(front), Ball(back) - Ball(front)});
+}
+
+/// In powers of x, exactly.
+Polynomial power_basis(const Bernstein<3>& p) {
+  const auto& [a, b, c, d] = p.coefficients;
+  const Ball first(a);
+  const Ball second(b);
+  const Ball third(c);
+  return polynomial({first, Ball(3.0) * (second - first), Ball(3.0) * (first - Ball(2.0) * second + third),
+                     Ball(d) - first + Ball(3.0) * (second - third)});
+}
+
 /// The numerator of N.V for the chord from one normal to the other.
 Polynomial chord(const ShadedSlab& slab, const Vector3<double>& vector) {
   const Ball front = dot(slab.front_normal, vector);
@@ -459,8 +484,8 @@ CertifiedRadiance slab_reference(const ShadedSlab& slab, const PiecewiseLinear& 
   check(slab);
   check(lighting);
   const Polynomial norm_square = chord_square(slab);
-  return SlabSum(slab, transfer, emission, lighting, {chord(slab, lighting.light), norm_square},
-                 {chord(slab, lighting.half), norm_square})(tolerance);
+  return SlabSum(linear(slab.front, slab.back), slab.length, transfer, emission, lighting,
+                 {chord(slab, lighting.light), norm_square}, {chord(slab, lighting.half), norm_square})(tolerance);
 }
 
 CertifiedRadiance cubic_reference(const ShadedSlab& slab, const PiecewiseLinear& transfer, Emission emission,
@@ -469,7 +494,22 @@ CertifiedRadiance cubic_reference(const ShadedSlab& slab, const PiecewiseLinear&
   const auto cosine = [](const Cubic& a) {
     return Cosine{polynomial({Ball(a[0]), Ball(a[1]), Ball(a[2]), Ball(a[3])}), Polynomial(1.0)};
   };
-  return SlabSum(slab, transfer, emission, lighting, cosine(light_cosine), cosine(half_cosine))(tolerance);
+  return SlabSum(linear(slab.front, slab.back), slab.length, transfer, emission, lighting, cosine(light_cosine),
+                 cosine(half_cosine))(tolerance);
+}
+
+CertifiedRadiance gradient_reference(const Bernstein<3>& scalar, double length,
+                                     const std::array<Bernstein<3>, 3>& gradient, const PiecewiseLinear& transfer,
+                                     Emission emission, const Lighting& lighting, double tolerance) {
+  check(lighting);
+  std::array<Polynomial, 3> vector;
+  for (std::size_t axis = 0; axis < 3; ++axis) vector[axis] = power_basis(gradient[axis]);
+  const Polynomial norm_square = vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2];
+  const auto along = [&](const Vector3<double>& direction) {
+    return Ball(direction[0]) * vector[0] + Ball(direction[1]) * vector[1] + Ball(direction[2]) * vector[2];
+  };
+  return SlabSum(power_basis(scalar), length, transfer, emission, lighting, {along(lighting.light), norm_square},
+                 {along(lighting.half), norm_square})(tolerance);
 }
 
 }  // namespace raytruth

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/bernstein.hpp"
 #include "shading/lighting.hpp"
 #include "shading/shaded_slab.hpp"
 #include "transfer/piecewise_linear.hpp"
@@ -31,5 +32,12 @@ using Cubic = std::array<double, 4>;
 CertifiedRadiance cubic_reference(const ShadedSlab& slab, const PiecewiseLinear& transfer, Emission emission,
                                   const Lighting& lighting, const Cubic& light_cosine, const Cubic& half_cosine,
                                   double tolerance = 1e-13);
+
+/// The same of a piece of a ray whose scalar is a cubic in x and whose normal is the normalised vector of three other
+/// ones: the lit truth of one cell Where the vector is zero, nothing is known of its direction,
+/// and the radius is infinite.
+CertifiedRadiance gradient_reference(const Bernstein<3>& scalar, double length,
+                                     const std::array<Bernstein<3>, 3>& gradient, const PiecewiseLinear& transfer,
+                                     Emission emission, const Lighting& lighting, double tolerance = 1e-13);
 
 }  // namespace raytruth

@@ -81,15 +81,19 @@ SlabShader shader_of(const NormalCurve& curve, const SlabCosines& cosines, const
     const double specular = illumination.specular(half(x));
     return LitPoint{illumination.diffuse(light(x)), specular, specular};
   }};
-  if (lighting.negative != Negative::none) {
-    add_roots(light, shader.breaks);
-    add_roots(half, shader.breaks);
-  }
-  if (!illumination.is_plain_power()) {
-    const double threshold = illumination.threshold();
-    add_roots([&](double x) { return half(x) - threshold; }, shader.breaks);
-    if (lighting.negative == Negative::mirror) add_roots([&](double x) { return half(x) + threshold; }, shader.breaks);
-  }
+  shader.breaks = [light, half, illumination, negative = lighting.negative] {
+    std::vector<double> breaks;
+    if (negative != Negative::none) {
+      add_roots(light, breaks);
+      add_roots(half, breaks);
+    }
+    if (!illumination.is_plain_power()) {
+      const double threshold = illumination.threshold();
+      add_roots([&](double x) { return half(x) - threshold; }, breaks);
+      if (negative == Negative::mirror) add_roots([&](double x) { return half(x) + threshold; }, breaks);
+    }
+    return breaks;
+  };
   return shader;
 }
 
@@ -177,7 +181,8 @@ SlabShader shader_with_fades(Fades fades, const SlabCosines& cosines, const Ligh
     if (fades == Fades::with_maximum) {
       if (const auto largest = inner_maximum(half)) {
         other = [peak = std::max(0.0, cone(std::min(*largest, 1.0)))](double s) { return peak * tent(s); };
-        shader.breaks.push_back(0.5);
+        shader.breaks = [] { return std::vector{0.5}; };
+        shader.has_two_highlights = true;
       }
     }
   }
@@ -210,7 +215,6 @@ SlabShader shader_of_opacity_gradient(const SlabCosines& cosines, const Lighting
                 const double specular = std::pow(half, n) * std::pow(slope, n);
                 return LitPoint{slope * light, specular, specular};
               },
-          .breaks = {},
           .specular_density = SpecularDensity::colored};
 }
 
@@ -298,7 +302,7 @@ SlabCosines cosines_of(const ShadedSlab& slab, const Lighting& lighting) {
 ShadedRadiance shade(const Shading& shading, const SlabCosines& cosines, const SlabOptics& optics, Emission emission,
                      const Lighting& lighting) {
   const SlabShader shader = shading.shader(cosines, lighting);
-  const auto sums = slab_integral<4>(optics, emission, shader.breaks, [&shader](double x, double slope) {
+  const auto sums = slab_integral<4>(optics, emission, shader.breaks(), [&shader](double x, double slope) {
     const LitPoint point = shader.at(x, slope);
     return std::array<double, 4>{1, point.diffuse, point.specular, point.other_specular};
   });

@@ -40,7 +40,9 @@ enum class SpecularDensity {
 /// A method on one slab: the lighting along it.
 struct SlabShader {
   std::function<LitPoint(double x, double extinction_slope)> at;
-  std::vector<double> breaks = {};  ///< in (0, 1), where `at` is not smooth
+  /// Where in (0, 1) `at` is not smooth; found on demand, for it takes longer than `at`.
+  std::function<std::vector<double>()> breaks = [] { return std::vector<double>(); };
+  bool has_two_highlights = false;  ///< other_specular is a tent and not the same as specular
   SpecularDensity specular_density = SpecularDensity::white;
 };
 

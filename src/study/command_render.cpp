@@ -56,7 +56,15 @@ int render_scene(const RenderOptions& options) {
     std::filesystem::path radii = file;
     radii.replace_filename(file.stem().string() + ".radius.npy");
     result["radius_image"] = radii.filename().string();
-    result["error_bound"] = *std::max_element(rendering.radii.begin(), rendering.radii.end());
+    const double radius = *std::max_element(rendering.radii.begin(), rendering.radii.end());
+    if (rendering.is_certified) {
+      result["error_bound"] = radius;
+    } else {
+      result["measured_radius"] = radius;
+      result["radius"] =
+          "sum of the differences of two quadratures (7 and 15 nodes) over all panels of a ray: an "
+          "estimate, not a bound; rounding is left out";
+    }
     result["not_converged"] = rendering.not_converged;
     write_whole(radii, number_file(rendering.radii, size));
   }

@@ -71,7 +71,8 @@ Light at_point(const Shading& shading, const SlabCosines& cosines, const Lightin
 Light mean_over_slab(const Shading& shading, const SlabCosines& cosines, const Lighting& lighting) {
   const SlabShader shader = shading.shader(cosines, lighting);
   std::vector<double> ends{0, 1};
-  ends.insert(ends.end(), shader.breaks.begin(), shader.breaks.end());
+  const std::vector<double> breaks = shader.breaks();
+  ends.insert(ends.end(), breaks.begin(), breaks.end());
   std::sort(ends.begin(), ends.end());
   LitPoint mean;
   for (std::size_t i = 1; i < ends.size(); ++i) {

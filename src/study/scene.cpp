@@ -162,18 +162,28 @@ EmptySpace read_empty_space(const JsonReader& json) {
   return empty;
 }
 
-/// Light and normals; half vectors are the pixels' own.
-SceneShading read_shading(const JsonReader& json) {
-  json.only({"method", "light", "ambient", "diffuse", "specular", "shininess", "highlight", "negative", "normal"});
-  SceneShading shading;
-  std::vector<std::string_view> methods;
-  for (const Shading& row : catalogue::shadings()) methods.push_back(row.name);
-  shading.method = catalogue::find_shading(json.at("method").word(methods));
-  Lighting& lighting = shading.lighting;
-  const Vector3<double> light = read_vector(json.at("light"));
-  const double norm = light.matrix().stableNorm();
-  if (!(norm > 0) || !std::isfinite(norm)) json.at("light").refuse_value("a direction");
-  lighting.light = light / norm;
+double read_share(const JsonReader& json) { return json.number(0, 1); }
+
+/// A colour, three numbers >= 0.
+Vector3<double> read_tone(const JsonReader& json) {
+  const Vector3<double> tone = read_vector(json);
+  if (!(tone >= 0).all()) json.refuse_value("a list of three numbers >= 0");
+  return tone;
+}
+
+Gooch read_gooch(const JsonReader& json) {
+  json.only({"cool", "warm", "cool_share", "warm_share", "diffuse"});
+  Gooch gooch;
+  if (const auto cool = json.find("cool")) gooch.cool = read_tone(*cool);
+  if (const auto warm = json.find("warm")) gooch.warm = read_tone(*warm);
+  if (const auto share = json.find("cool_share")) gooch.cool_share = read_share(*share);
+  if (const auto share = json.find("warm_share")) gooch.warm_share = read_share(*share);
+  if (const auto diffuse = json.find("diffuse")) gooch.diffuse = diffuse->number(0);
+  return gooch;
+}
+
+/// Ambient, diffuse and specular light.
+void read_lighting(const JsonReader& json, Lighting& lighting) {
   lighting.ambient = json.at("ambient").number(0);
   lighting.diffuse = json.at("diffuse").number(0);
   lighting.specular = json.at("specular").number(0);
@@ -185,12 +195,32 @@ SceneShading read_shading(const JsonReader& json) {
   }
   constexpr std::array<std::string_view, 3> treatments{"clamp", "mirror", "none"};
   if (const auto negative = json.find("negative")) lighting.negative = read_word<Negative>(*negative, treatments);
-  if (const auto normal = json.find("normal"))
-    shading.is_along_gradient = normal->word({"minus_gradient", "gradient"}) == "gradient";
   json.at("shininess").blame_for([&lighting] {
     check(lighting);
     return 0;
   });
+}
+
+/// Light and normals; half vectors are the pixels' own.
+SceneShading read_shading(const JsonReader& json) {
+  SceneShading shading;
+  std::vector<std::string_view> methods{"pointwise"};
+  for (const Shading& row : catalogue::shadings()) methods.push_back(row.name);
+  // "pointwise" is in no list: it has no slabs.
+  if (const auto method = json.find("method")) shading.method = catalogue::find_shading(method->word(methods));
+  const Vector3<double> light = read_vector(json.at("light"));
+  const double norm = light.matrix().stableNorm();
+  if (!(norm > 0) || !std::isfinite(norm)) json.at("light").refuse_value("a direction");
+  shading.lighting.light = light / norm;
+  if (const auto gooch = json.find("gooch")) {
+    json.only({"method", "light", "gooch", "normal"});
+    shading.gooch = read_gooch(*gooch);
+  } else {
+    json.only({"method", "light", "ambient", "diffuse", "specular", "shininess", "highlight", "negative", "normal"});
+    read_lighting(json, shading.lighting);
+  }
+  if (const auto normal = json.find("normal"))
+    shading.is_along_gradient = normal->word({"minus_gradient", "gradient"}) == "gradient";
   return shading;
 }
 
@@ -216,12 +246,7 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
       table->refuse(fmt::format("a table with the scheme {}", scheme), "one with the scheme order1");
     scene.table = read_table(*table);
   }
-  if (const auto shading = json.find("shading")) {
-    if (scheme != "order1" || scene.table)
-      shading->refuse(fmt::format("shading with the scheme {}{}", scheme, scene.table ? " and a table" : ""),
-                      "shading with the scheme order1 and without a table");
-    scene.shading = read_shading(*shading);
-  }
+  if (const auto shading = json.find("shading")) scene.shading = read_shading(*shading);
   if (const auto opaque = json.find("early_termination")) scene.opaque = opaque->number(0, 1);
   if (const auto empty = json.find("empty_space")) scene.empty_space = read_empty_space(*empty);
   scene.grid = read_voxels(json, options, result);

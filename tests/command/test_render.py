@@ -145,6 +145,26 @@ class Images(ProgramTest):
         _, image = self.render({**scene, "shading": {**shading, "diffuse": 0, "specular": 0.5, "shininess": 3}})
         numpy.testing.assert_allclose(image[0, 0, 0], opacity * (0.1 + 0.5 * (0.6 / 2**0.5) ** 3), rtol=1e-6)
 
+        # A plane has one normal: all schemes, methods and tables agree on its light.
+        for scheme, method, options in (
+            ("reference", None, {}), ("cell_cubic", None, {}), ("cell_cubic", "mean_gradient", {"step": 1}),
+            ("order2", "linear_gradient", {"step": 0.25}), ("order1", "pointwise", {"step": 2}),
+            ("order1", "linear_intensity", {"step": 0.5, "table": {"size": 33, "format": "float64"}}),
+            ("order1", "minimax_arc", {"table": {"size": 33, "format": "float64"}}),
+            ("riemann_mid", None, {"step": 0.5}), ("reference", None, {"reconstruction": "catmull_rom"}),
+        ):
+            with self.subTest(scheme=scheme, method=method, **options):
+                light = {key: value for key, value in shading.items() if key != "method"} | ({"method": method} if method else {})
+                answer, image = self.render({**scene, **options, "scheme": scheme, "shading": light})
+                numpy.testing.assert_allclose(image[0, 0], [opacity * (0.1 + 0.8 * 0.6)] * 3 + [opacity], rtol=1e-6)
+                self.assertEqual("measured_radius" in answer, scheme == "reference")
+                self.assertNotIn("error_bound", answer)
+        # Gooch's tones at the cosine 0.6: the colour is 1.
+        gooch = {"light": [-3, 4, 0], "gooch": {"cool": [0, 0, 0.4], "warm": [0.4, 0.4, 0], "cool_share": 0.2, "warm_share": 0.6}}
+        _, image = self.render({**scene, "scheme": "reference", "shading": gooch})
+        tone = 0.8 * (0.2 + numpy.array([0, 0, 0.4])) + 0.2 * (0.6 + numpy.array([0.4, 0.4, 0]))
+        numpy.testing.assert_allclose(image[0, 0, :3], opacity * tone, rtol=1e-6)
+
     def test_where_the_gradient_is_zero_only_ambient_light_counts(self):
         scene = changed(SCENE, "/volume/values", [0.5] * 12)
         shading = {"method": "quadratic_arc", "light": [0, 0, -1], "ambient": 0.25, "diffuse": 1, "specular": 1, "shininess": 10}
@@ -195,7 +215,13 @@ class Refusals(ProgramTest):
         ("/scheme", "order4", "perhaps order"),
         ("/step", -1, "> 0"),
         ("/table", {"size": 64}, "order1"),
-        ("/shading", {"method": "quadratic_arc"}, "order1"),
+        ("/shading", {"method": "quadratic_arc"}, "light"),
+        ("/shading", {"light": [0, 0, 0]}, "direction"),
+        ("/shading", {"light": [0, 0, 1], "method": "arc"}, "pointwise"),
+        ("/shading", {"light": [0, 0, 1], "ambient": 0, "diffuse": -1}, "diffuse"),
+        ("/shading", {"light": [0, 0, 1], "gooch": {"cool": [0, 0, -1]}}, ">= 0"),
+        ("/shading", {"light": [0, 0, 1], "gooch": {}, "ambient": 1}, "ambient"),
+        ("/shading", {"light": [0, 0, 1], "gooch": {}, "method": "linear_gradient"}, "pointwise"),
         ("/early_termination", 2, "1"),
         ("/empty_space", {"bounds": "none"}, "corrected"),
         ("/reconstruction", "cubic", "catmull_rom"),
