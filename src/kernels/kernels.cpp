@@ -1,4 +1,5 @@
 #include "kernels/kernels.hpp"
+#include "kernels/cell_kernels.hpp"
 #include "kernels/slab_kernels.hpp"
 #include "kernels/table_kernels.hpp"
 
@@ -7,7 +8,8 @@
   extern const Kernels<3> kernels_of_3;        \
   extern const Kernels<9> kernels_of_9;        \
   extern const TableKernels kernels_of_tables; \
-  extern const SlabKernels kernels_of_slabs;
+  extern const SlabKernels kernels_of_slabs;   \
+  extern const CellKernels kernels_of_cells;
 
 namespace raytruth {
 
@@ -66,6 +68,11 @@ const std::vector<const Kernels<9>*>& kernel_versions<9>() {
 
 const std::vector<const TableKernels*>& table_kernel_versions() {
   static const auto versions = RAYTRUTH_VERSIONS(kernels_of_tables);
+  return versions;
+}
+
+const std::vector<const CellKernels*>& cell_kernel_versions() {
+  static const auto versions = RAYTRUTH_VERSIONS(kernels_of_cells);
   return versions;
 }
 

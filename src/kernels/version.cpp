@@ -1,5 +1,6 @@
 // Compiled once for every level of x86-64, with RAYTRUTH_LEVEL naming it.
 
+#include "kernels/cell_kernel.hpp"
 #include "kernels/look_up_kernel.hpp"
 #include "kernels/moment_kernel.hpp"
 #include "kernels/piece_kernel.hpp"
@@ -51,5 +52,8 @@ const TableKernels kernels_of_tables{float_lane_count, run_band<SlabAlgebra>, ru
 
 extern const SlabKernels kernels_of_slabs;
 const SlabKernels kernels_of_slabs{march_four, second_order_row};
+
+extern const CellKernels kernels_of_cells;
+const CellKernels kernels_of_cells{integrate_cells};
 
 }  // namespace raytruth::inline RAYTRUTH_LEVEL

@@ -19,6 +19,8 @@ class PaddedVoxels {
   [[nodiscard]] const float* at(std::int64_t i, std::int64_t j, std::int64_t k) const {
     return values_.data() + (i + j * stride_[0] + k * stride_[1]);
   }
+  [[nodiscard]] const float* data() const { return values_.data(); }
+  [[nodiscard]] std::int64_t count() const { return static_cast<std::int64_t>(values_.size()); }
   /// From a voxel to the next one along y and along z.
   [[nodiscard]] const std::array<std::int64_t, 2>& stride() const { return stride_; }
 

@@ -13,8 +13,10 @@
 #include "signals/cell_walk.hpp"
 #include "signals/tricubic.hpp"
 #include "signals/trilinear.hpp"
+#include "tables/second_order.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
@@ -22,6 +24,7 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <numeric>
 #include <utility>
 
 namespace raytruth {
@@ -181,47 +184,92 @@ PixelRenderer scheme_renderer(const Field<Degree>& field, const Scene& scene, co
   };
 }
 
-/// Of the slabs that a table holds.
-double table_length(const Scene& scene) { return scene.step.value_or(1); }
+/// Intervals from sample to sample that are one slab of a table.
+std::size_t slab_intervals(const Scene& scene) { return scene.scheme == "order2" ? 2 : 1; }
 
-/// Slabs of any length from a table made for the step: `slab_of(view, k, samples, share)` gives that of interval k, a
-/// share of the table's length, its opacity corrected as if it were homogeneous.
+/// Of the slabs that a table holds.
+double table_length(const Scene& scene) { return static_cast<double>(slab_intervals(scene)) * scene.step.value_or(1); }
+
+Eigen::Array4d corrected_slab(const Eigen::Array4d& slab, double share) {
+  Rules<double> rules;
+  if (share == 1) return slab;
+  return rules.opacity_corrected_slab(slab, rules.opacity_correction(slab[3], share), share);
+}
+
+/// Slabs of any length from a table made for the step: `slab_of(view, first, last, samples, share)` gives that from
+/// sample `first` to `last`, a share of the table's length, its opacity corrected as if it were homogeneous.
 template <int Degree, class MakeView, class SlabOf>
 PixelRenderer slab_renderer(const Field<Degree>& field, const Scene& scene, const OccupiedBlocks* blocks,
                             const MakeView& make_view, const SlabOf& slab_of) {
-  return
-      [&field, &scene, make_view, slab_of, length = table_length(scene), parts_of = PartsOfRay(field.grid.size, blocks),
-       chain = Chain<Degree>(), samples = Samples<double>()](const PixelRay& pixel) mutable -> PixelLight {
-        const auto parts = parts_of(pixel.ray, pixel.length_unit);
-        if (parts && parts->empty()) return {};
-        field.trace(pixel.ray, chain);
-        scale_lengths(chain, pixel.length_unit);
-        take_samples(chain, scene.step, samples);
-        const Omissions omissions{.occupied = parts, .opaque = scene.opaque};
-        PixelLight result;
-        const auto view = make_view(pixel);
-        const std::size_t full = full_intervals(samples);
-        for (std::size_t k = 0; k < samples.interval_count() && result.light[3] < omissions.opaque; ++k) {
-          if (omissions.omit(static_cast<double>(samples.positions[k]), static_cast<double>(samples.positions[k + 1])))
-            continue;
-          const double share = samples.step && k < full ? 1 : samples.length_of(k) / length;
-          result.light = Rules<double>{}.over(result.light, slab_of(view, k, samples, share));
-        }
-        return result;
-      };
+  return [&field, &scene, make_view, slab_of, length = table_length(scene),
+          parts_of = PartsOfRay(field.grid.size, blocks), chain = Chain<Degree>(),
+          samples = Samples<double>()](const PixelRay& pixel) mutable -> PixelLight {
+    const auto parts = parts_of(pixel.ray, pixel.length_unit);
+    if (parts && parts->empty()) return {};
+    field.trace(pixel.ray, chain);
+    scale_lengths(chain, pixel.length_unit);
+    take_samples(chain, scene.step, samples);
+    const Omissions omissions{.occupied = parts, .opaque = scene.opaque};
+    PixelLight result;
+    const auto view = make_view(pixel);
+    const std::size_t full = full_intervals(samples);
+    const std::size_t intervals = slab_intervals(scene);
+    for (std::size_t first = 0, last = 0; first < samples.interval_count() && result.light[3] < omissions.opaque;
+         first = last) {
+      last = std::min(first + intervals, samples.interval_count());
+      if (omissions.omit(static_cast<double>(samples.positions[first]), static_cast<double>(samples.positions[last])))
+        continue;
+      const bool is_full = samples.step && last == first + intervals && last <= full;
+      const double share =
+          is_full ? 1 : static_cast<double>(samples.positions[last] - samples.positions[first]) / length;
+      result.light = Rules<double>{}.over(result.light, slab_of(view, first, last, samples, share));
+    }
+    return result;
+  };
 }
 
 template <int Degree>
 PixelRenderer table_renderer(const Field<Degree>& field, const Scene& scene, const Table<double>& table,
                              const OccupiedBlocks* blocks) {
-  const auto slab_of = [&scene, &table](int /*view*/, std::size_t k, const Samples<double>& samples, double share) {
+  const auto slab_of = [&scene, &table](int /*view*/, std::size_t first, std::size_t last,
+                                        const Samples<double>& samples, double share) {
     const auto texel = [&table](std::size_t front, std::size_t back) { return table.at(front, back); };
-    const std::array scalars{samples.values[k], samples.values[k + 1]};
-    const Eigen::Array4d slab = scene.table->filter == TableFilter::linear
-                                    ? bilinear<double>(table.axes, texel, scalars)
-                                    : nearest<double>(table.axes, texel, scalars);
-    Rules<double> rules;
-    return share == 1 ? slab : rules.opacity_corrected_slab(slab, rules.opacity_correction(slab[3], share), share);
+    const std::array scalars{samples.values[first], samples.values[last]};
+    return corrected_slab(scene.table->filter == TableFilter::linear ? bilinear<double>(table.axes, texel, scalars)
+                                                                     : nearest<double>(table.axes, texel, scalars),
+                          share);
+  };
+  return slab_renderer(
+      field, scene, blocks, [](const PixelRay& /*pixel*/) { return 0; }, slab_of);
+}
+
+/// The parabola through the samples of a pair of intervals, or the line of an unpaired one, at the middle of its slab.
+double middle_scalar(const Samples<double>& samples, std::size_t first, std::size_t last) {
+  const auto at = [&samples](std::size_t k) { return samples.values[k]; };
+  if (last == first + 1) return std::midpoint(at(first), at(last));
+  const double front_length = samples.length_of(first);
+  const double split = front_length / (front_length + samples.length_of(first + 1));
+  if (std::abs(split - 0.5) < 1e-9) return at(first + 1);
+  Rules<double> rules;
+  if (split > 0.5)
+    return Rules<double>::cubic(rules.order2_front(at(first), at(first + 1), at(last), split)).value(0.5 / split);
+  return Rules<double>::cubic(rules.order2_back(at(first), at(first + 1), at(last), split))
+      .value((0.5 - split) / (1 - split));
+}
+
+template <int Degree>
+PixelRenderer second_order_renderer(const Field<Degree>& field, const Scene& scene, const Table3<float>& table,
+                                    const OccupiedBlocks* blocks) {
+  const auto slab_of = [&scene, &table](int /*view*/, std::size_t first, std::size_t last,
+                                        const Samples<double>& samples, double share) {
+    const auto texel = [&table](std::size_t front, std::size_t middle, std::size_t back) -> Eigen::Array4d {
+      return table.at(front, middle, back).cast<double>();
+    };
+    const std::array scalars{samples.values[first], middle_scalar(samples, first, last), samples.values[last]};
+    const auto entry = [&](std::size_t i) { return TablePlace<double>::of(table.axes, scalars[i], 0).nearest(); };
+    return corrected_slab(scene.table->filter == TableFilter::linear ? trilinear<double>(table.axes, texel, scalars)
+                                                                     : texel(entry(0), entry(1), entry(2)),
+                          share);
   };
   return slab_renderer(
       field, scene, blocks, [](const PixelRay& /*pixel*/) { return 0; }, slab_of);
@@ -232,12 +280,13 @@ PixelRenderer shaded_table_renderer(const Field<Degree>& field, const Scene& sce
                                     const OccupiedBlocks* blocks) {
   const auto view_of = [&scene](const PixelRay& pixel) { return LitView(scene.grid, *scene.shading, pixel); };
   const auto slab_of = [&scene, &table, clear = ClearScalars(scene.transfer, scene.emission)](
-                           const LitView& view, std::size_t k, const Samples<double>& samples, double share) {
-    const double front = samples.values[k];
-    const double back = samples.values[k + 1];
+                           const LitView& view, std::size_t first, std::size_t last, const Samples<double>& samples,
+                           double share) {
+    const double front = samples.values[first];
+    const double back = samples.values[last];
     if (clear.contain(std::min(front, back), std::max(front, back))) return Eigen::Array4d(Eigen::Array4d::Zero());
-    const auto [shader, model] = view.slab_light(*scene.shading, static_cast<double>(samples.positions[k]),
-                                                 static_cast<double>(samples.positions[k + 1]));
+    const auto [shader, model] = view.slab_light(*scene.shading, static_cast<double>(samples.positions[first]),
+                                                 static_cast<double>(samples.positions[last]));
     return table(front, back, share, shader, model);
   };
   return slab_renderer(field, scene, blocks, view_of, slab_of);
@@ -294,6 +343,23 @@ TableAxes table_axes(const Scene& scene) {
   const auto [low, high] = scene.grid.range();
   // A constant grid asks for one entry only.
   return {.size = scene.table->size, .low = low, .high = low < high ? high : low + 1, .length = table_length(scene)};
+}
+
+/// Of second order; of 4 numbers for every entry in binary32.
+Table3<float> second_order_table_of(const Scene& scene) {
+  const SceneTable& asked = *scene.table;
+  Table3<float> table;
+  if (asked.builder == second_order_builder_names[0])
+    table = second_order_table(scene.transfer, table_axes(scene), scene.emission, Ideal{});
+  else if (asked.builder == second_order_builder_names[1])
+    table = second_order_table(scene.transfer, table_axes(scene), scene.emission, NyquistIterations{});
+  else if (asked.builder == second_order_builder_names[2])
+    table = second_order_table(scene.transfer, table_axes(scene), scene.emission, Iterations{asked.iterations});
+  else
+    throw InputError(fmt::format("table builder {} with the scheme order2; {} are allowed", asked.builder,
+                                 fmt::join(second_order_builder_names, ", ")));
+  for (float& number : table.values) number = static_cast<float>(stored(asked.format, number));
+  return table;
 }
 
 Table<double> table_of(const Scene& scene) {
@@ -370,9 +436,10 @@ struct Renderer::Parts {
     }
     if (Degree == 3 && std::holds_alternative<CellCubic>(scheme->method)) {
       cell_march.emplace(scene.grid, scene.transfer, scene.emission, scene.opaque);
-      make_renderer = [this, occupied] {
+      if (!blocks) blocks.emplace(certain_blocks(scene, field.grid));
+      make_renderer = [this] {
         return [march = CellRay(*cell_march, scene.transfer, scene.emission),
-                parts_of = PartsOfRay(scene.grid.size, occupied)](const PixelRay& pixel) mutable -> PixelLight {
+                parts_of = PartsOfRay(scene.grid.size, &*blocks)](const PixelRay& pixel) mutable -> PixelLight {
           return {march(pixel, parts_of(pixel.ray))};
         };
       };
@@ -384,8 +451,14 @@ struct Renderer::Parts {
 
   template <int Degree>
   void choose_table(const Field<Degree>& field, const OccupiedBlocks* occupied) {
-    if (scene.scheme != "order1")
-      throw InputError(fmt::format("scheme {} with a table; order1 is allowed", scene.scheme));
+    if (scene.scheme != "order1" && scene.scheme != "order2")
+      throw InputError(fmt::format("scheme {} with a table; order1 and order2 are allowed", scene.scheme));
+    if (scene.scheme == "order2") {
+      if (scene.shading) throw InputError("scheme order2 with a table and shading; either is allowed");
+      second_order = second_order_table_of(scene);
+      make_renderer = [&field, this, occupied] { return second_order_renderer(field, scene, *second_order, occupied); };
+      return;
+    }
     if (scene.shading) {
       ShadedRay<Degree>{scene};
       shaded_table.emplace(scene, table_axes(scene));
@@ -426,6 +499,7 @@ struct Renderer::Parts {
   std::optional<OccupiedBlocks> blocks;
   const IntegralScheme* scheme = nullptr;
   std::optional<Table<double>> table;
+  std::optional<Table3<float>> second_order;
   std::optional<ShadedTable> shaded_table;
   std::optional<TableMarch> table_march;
   std::optional<CellMarch> cell_march;

@@ -8,6 +8,7 @@
 #include "study/read_transfer_function.hpp"
 #include "study/transfer_file.hpp"
 #include "study/volume_source.hpp"
+#include "tables/table3.hpp"
 #include "volume/find_volume.hpp"
 
 #include <fmt/format.h>
@@ -22,6 +23,7 @@ namespace raytruth {
 namespace {
 
 constexpr std::int64_t largest_generated_size = 512;
+constexpr std::int64_t most_table_iterations = 4096;
 constexpr std::int64_t most_pixels = std::int64_t{1} << 28;
 
 template <class Names>
@@ -134,15 +136,26 @@ Camera read_camera(const JsonReader& json, const Grid& grid) {
   return camera;
 }
 
-SceneTable read_table(const JsonReader& json) {
-  json.only({"builder", "size", "format", "filter"});
-  SceneTable table;
-  if (const auto builder = json.find("builder")) {
-    std::vector<std::string_view> names;
+SceneTable read_table(const JsonReader& json, const std::string& scheme) {
+  if (scheme != "order1" && scheme != "order2")
+    json.refuse(fmt::format("a table with the scheme {}", scheme), "one with the scheme order1 or order2");
+  const bool is_second_order = scheme == "order2";
+  std::vector<std::string_view> names = words(second_order_builder_names);
+  if (!is_second_order) {
+    names.clear();
     for (const TableBuilder& row : catalogue::table_builders()) names.push_back(row.name);
-    table.builder = builder->word(names);
   }
-  table.size = static_cast<std::size_t>(json.at("size").integer(2, largest_table_size));
+  SceneTable table;
+  if (is_second_order) table.builder = second_order_builder_names[0];
+  if (const auto builder = json.find("builder")) table.builder = builder->word(names);
+  if (table.builder == second_order_builder_names[2]) {
+    json.only({"builder", "iterations", "size", "format", "filter"});
+    table.iterations = static_cast<int>(json.at("iterations").integer(1, most_table_iterations));
+  } else {
+    json.only({"builder", "size", "format", "filter"});
+  }
+  const std::size_t largest = is_second_order ? largest_table3_size : largest_table_size;
+  table.size = static_cast<std::size_t>(json.at("size").integer(2, static_cast<std::int64_t>(largest)));
   if (const auto format = json.find("format")) {
     std::vector<std::string_view> names;
     for (const TableFormat& row : table_formats) names.push_back(row.name);
@@ -241,11 +254,7 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   if (const auto kind = json.find("reconstruction")) scene.field = read_word<FieldKind>(*kind, field_kind_names);
   scene.emission = read_emission(json);
   if (const auto step = json.find("step")) scene.step = step->positive_number();
-  if (const auto table = json.find("table")) {
-    if (scheme != "order1")
-      table->refuse(fmt::format("a table with the scheme {}", scheme), "one with the scheme order1");
-    scene.table = read_table(*table);
-  }
+  if (const auto table = json.find("table")) scene.table = read_table(*table, scheme);
   if (const auto shading = json.find("shading")) scene.shading = read_shading(*shading);
   if (const auto opaque = json.find("early_termination")) scene.opaque = opaque->number(0, 1);
   if (const auto empty = json.find("empty_space")) scene.empty_space = read_empty_space(*empty);

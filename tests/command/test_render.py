@@ -214,7 +214,7 @@ class Refusals(ProgramTest):
         ("/camera/height", 0, "> 0"),
         ("/scheme", "order4", "perhaps order"),
         ("/step", -1, "> 0"),
-        ("/table", {"size": 64}, "order1"),
+        ("/table", {"size": 64}, "order2"),
         ("/shading", {"method": "quadratic_arc"}, "light"),
         ("/shading", {"light": [0, 0, 0]}, "direction"),
         ("/shading", {"light": [0, 0, 1], "method": "arc"}, "pointwise"),
@@ -237,6 +237,17 @@ class Refusals(ProgramTest):
                 done = self.run_program("render", scene, "-o", "image.npy")
                 self.assert_refused(done, "scene.json", words)
         self.assertEqual(self.names_in_folder(), ["scene.json"])
+
+    def test_bad_tables(self):
+        for scheme, table, words in (
+            ("order2", {"size": 257}, "256"), ("order2", {"size": 64, "builder": "exact"}, "second_order_exact"),
+            ("order1", {"size": 64, "builder": "second_order_exact"}, "exact"), ("order1", {"size": 1e9}, "16384"),
+            ("order2", {"size": 64, "builder": "second_order_iterations"}, "iterations"),
+            ("order2", {"size": 64, "iterations": 64}, "iterations"),
+        ):
+            with self.subTest(scheme=scheme, table=table):
+                done = self.run_program("render", self.write("s.json", {**SCENE, "scheme": scheme, "table": table}), "-o", "i.npy")
+                self.assert_refused(done, "s.json", "/table", words)
 
     def test_what_schemes_refuse(self):
         for scheme in ("virtual_catmull_rom", "sampled_virtual_catmull_rom_3"):  # they need equal steps
