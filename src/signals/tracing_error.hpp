@@ -85,17 +85,22 @@ struct ReachedVoxels {
       high[axis] = std::clamp(last_voxel[axis], std::int64_t{0}, grid.size[axis] - 1);
     }
     first = grid.at(low[0], low[1], low[2]);
-    const std::array<std::int64_t, 3> stride{1, grid.size[0], grid.size[0] * grid.size[1]};
+    // Row by row, without a branch for every voxel: this is much of the time that a bound takes.
+    const std::int64_t next_row = grid.size[0];
+    const std::int64_t next_plane = grid.size[0] * grid.size[1];
+    const std::int64_t count = high[0] - low[0];
+    const auto steps = [](const double* from, const double* to, std::int64_t last, double largest) {
+      for (std::int64_t i = 0; i <= last; ++i) largest = std::max(largest, std::abs(to[i] - from[i]));
+      return largest;
+    };
     for (std::int64_t k = low[2]; k <= high[2]; ++k)
-      for (std::int64_t j = low[1]; j <= high[1]; ++j)
-        for (std::int64_t i = low[0]; i <= high[0]; ++i) {
-          const std::array<std::int64_t, 3> voxel{i, j, k};
-          const double* const value = grid.values.data() + grid.index(i, j, k);
-          magnitude = std::max(magnitude, std::abs(*value));
-          for (std::size_t axis = 0; axis < 3; ++axis)
-            if (voxel[axis] < high[axis])
-              difference[axis] = std::max(difference[axis], std::abs(value[stride[axis]] - *value));
-        }
+      for (std::int64_t j = low[1]; j <= high[1]; ++j) {
+        const double* const row = grid.values.data() + grid.index(low[0], j, k);
+        for (std::int64_t i = 0; i <= count; ++i) magnitude = std::max(magnitude, std::abs(row[i]));
+        difference[0] = steps(row, row + 1, count - 1, difference[0]);
+        if (j < high[1]) difference[1] = steps(row, row + next_row, count, difference[1]);
+        if (k < high[2]) difference[2] = steps(row, row + next_plane, count, difference[2]);
+      }
   }
 
   [[nodiscard]] bool are_all(double value) const { return first == value && difference == std::array<double, 3>{}; }
