@@ -38,6 +38,14 @@ inline DoubleDouble4 operator-(const DoubleDouble4& a, const DoubleDouble4& b) {
   return a + DoubleDouble4{-b.high, -b.low};
 }
 
+/// a * b, a being exact.
+inline DoubleDouble4 product(const DoubleDouble4::Vector& a, const DoubleDouble& b) {
+  const auto high = a * b.high;
+  DoubleDouble4::Vector rest{};
+  for (int lane = 0; lane < 4; ++lane) rest[lane] = std::fma(a[lane], b.high, -high[lane]);
+  return fast_two_sum(high, rest + a * b.low);
+}
+
 inline DoubleDouble4 operator*(const DoubleDouble4& a, const DoubleDouble& b) {
   const auto product = a.high * b.high;
   DoubleDouble4::Vector rest{};

@@ -2,6 +2,7 @@
 
 #include "core/chain.hpp"
 #include "core/double_double.hpp"
+#include "core/double_double4.hpp"
 #include "reference/certified.hpp"
 #include "signals/cell_walk.hpp"
 #include "signals/ray.hpp"
@@ -45,22 +46,33 @@ struct ExactLine {
 /// ends by no more than rounding.
 struct ExactSegment {
   ExactSegment(const ExactLine& line, const DoubleDouble& lambda_begin, const DoubleDouble& lambda_end) {
+    using Vector = DoubleDouble4::Vector;
+    const Vector origin{line.origin[0], line.origin[1], line.origin[2], 0};
+    const Vector direction{line.direction[0], line.direction[1], line.direction[2], 0};
+    const DoubleDouble4 from = product(direction, lambda_begin);
+    const DoubleDouble4 to = product(direction, lambda_end);
+    const DoubleDouble4 middle = DoubleDouble4{origin, {}} + (from + to) * DoubleDouble(0.5);
+    Vector low{};
+    for (int axis = 0; axis < 3; ++axis)
+      low[axis] =
+          std::clamp(floor(middle[axis]), -1.0, static_cast<double>(line.size[static_cast<std::size_t>(axis)] - 1));
+    // From either border for itself, so that a line that starts on one is off by the noise of its way only.
+    const DoubleDouble4 from_low = two_sum(origin, -low);
+    const DoubleDouble4 from_high = two_sum(origin, -low - 1);
+    const DoubleDouble4 begin = from_low + from;
+    const DoubleDouble4 end = from_low + to;
+    const Vector begin_of_high = (from_high + from).high;
+    const Vector end_of_high = (from_high + to).high;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const DoubleDouble from = lambda_begin * line.direction[axis];
-      const DoubleDouble to = lambda_end * line.direction[axis];
-      const DoubleDouble middle = DoubleDouble(line.origin[axis]) + (from + to) * 0.5;
-      const double low = std::clamp(floor(middle), -1.0, static_cast<double>(line.size[axis] - 1));
-      // From either border for itself, so that a line that starts on one is off by the noise of its way only.
-      const DoubleDouble from_low = two_sum(line.origin[axis], -low);
-      const DoubleDouble from_high = two_sum(line.origin[axis], -low - 1);
-      cell.cell[axis] = static_cast<std::int64_t>(low);
-      cell.begin[axis] = from_low + from;
-      cell.end[axis] = from_low + to;
+      const auto lane = static_cast<int>(axis);
+      cell.cell[axis] = static_cast<std::int64_t>(low[lane]);
+      cell.begin[axis] = begin[lane];
+      cell.end[axis] = end[lane];
       if (line.direction[axis] == 0) continue;
-      const double noise_of_way = ExactLine::noise * std::abs(to.high);
+      const double noise_of_way = ExactLine::noise * std::abs(to.high[lane]);
       noise[axis] = noise_of_way + ExactLine::noise;
-      before[axis] = std::max(0.0, noise_of_way - std::min(cell.begin[axis], cell.end[axis]).high);
-      behind[axis] = std::max(0.0, noise_of_way + std::max(from_high + from, from_high + to).high);
+      before[axis] = std::max(0.0, noise_of_way - std::min(begin.high[lane], end.high[lane]));
+      behind[axis] = std::max(0.0, noise_of_way + std::max(begin_of_high[lane], end_of_high[lane]));
     }
   }
 

@@ -69,20 +69,15 @@ struct Corners106 {
   }
 };
 
-/// Bernstein coefficients from the values at the corners of the segment's box; see the header for the formula. As steps
-/// from the ends: constant data give constant coefficients, bit by bit.
-template <class Real, class At>
-Bernstein<3, Real> cubic_of(const At& at) {
-  const Real p = at(0);
-  const Real q = at(7);
-  return {{p, p + ((at(1) - p) + (at(2) - p) + (at(4) - p)) / 3, q + ((at(6) - q) + (at(5) - q) + (at(3) - q)) / 3, q}};
-}
-
 /// The cubic on the segment of a cell between two local points.
 Bernstein<3> cell_cubic(const Grid& grid, const CellSegment<double>& segment) {
   auto corners = corners_of(grid, segment.cell);
   for (std::size_t axis = 0; axis < 3; ++axis) corners = cut(corners, segment.begin[axis], segment.end[axis]);
-  return cubic_of<double>([&corners](std::size_t i) { return corners[i]; });
+  // As steps from the ends: constant data give constant coefficients, bit by bit.
+  const double p = corners[0];
+  const double q = corners[7];
+  return {{p, p + ((corners[1] - p) + (corners[2] - p) + (corners[4] - p)) / 3,
+           q + ((corners[6] - q) + (corners[5] - q) + (corners[3] - q)) / 3, q}};
 }
 
 Bernstein<3, DoubleDouble> cell_cubic(const Grid& grid, const CellSegment<DoubleDouble>& segment) {
@@ -90,7 +85,16 @@ Bernstein<3, DoubleDouble> cell_cubic(const Grid& grid, const CellSegment<Double
   Corners106 corners{{{v[0], v[1], v[2], v[3]}, {}}, {{v[4], v[5], v[6], v[7]}, {}}};
   for (std::size_t axis = 0; axis < 3; ++axis)
     corners = corners.by_lowest_bit().cut(segment.begin[axis], segment.end[axis]);
-  return cubic_of<DoubleDouble>([&corners](int i) { return i < 4 ? corners.first[i] : corners.second[i - 4]; });
+  // The same formula, for both inner coefficients side by side.
+  const auto pair = [&](int i, int j) {
+    const DoubleDouble a = i < 4 ? corners.first[i] : corners.second[i - 4];
+    const DoubleDouble b = j < 4 ? corners.first[j] : corners.second[j - 4];
+    return DoubleDouble4{{a.high, b.high, 0, 0}, {a.low, b.low, 0, 0}};
+  };
+  constexpr DoubleDouble third{0x1.5555555555555p-2, 0x1.5555555555555p-56};
+  const DoubleDouble4 ends = pair(0, 7);
+  const DoubleDouble4 inner = ends + ((pair(1, 6) - ends) + (pair(2, 5) - ends) + (pair(4, 3) - ends)) * third;
+  return {{ends[0], inner[0], inner[1], ends[1]}};
 }
 
 }  // namespace
