@@ -56,7 +56,8 @@ struct ExactSegment {
     for (int axis = 0; axis < 3; ++axis)
       low[axis] =
           std::clamp(floor(middle[axis]), -1.0, static_cast<double>(line.size[static_cast<std::size_t>(axis)] - 1));
-    // From either border for itself, so that a line that starts on one is off by the noise of its way only.
+    // From either border for itself, so that a line that starts on one is off by the noise of its way only: sums are
+    // off by 2^-102 of their terms, and where these are of different size the sum is far from the border.
     const DoubleDouble4 from_low = two_sum(origin, -low);
     const DoubleDouble4 from_high = two_sum(origin, -low - 1);
     const DoubleDouble4 begin = from_low + from;
