@@ -3,6 +3,7 @@
 #include "kernels/cell_kernel.hpp"
 #include "kernels/look_up_kernel.hpp"
 #include "kernels/moment_kernel.hpp"
+#include "kernels/parabola_kernel.hpp"
 #include "kernels/piece_kernel.hpp"
 #include "kernels/second_order_kernel.hpp"
 #include "kernels/stretch_kernel.hpp"
@@ -51,7 +52,7 @@ extern const TableKernels kernels_of_tables;
 const TableKernels kernels_of_tables{float_lane_count, run_band<SlabAlgebra>, run_band<MomentAlgebra>};
 
 extern const SlabKernels kernels_of_slabs;
-const SlabKernels kernels_of_slabs{march_four, second_order_row};
+const SlabKernels kernels_of_slabs{march_four, second_order_row, float_lane_count, parabolas};
 
 extern const CellKernels kernels_of_cells;
 const CellKernels kernels_of_cells{integrate_cells};

@@ -1,12 +1,12 @@
 #include "tables/second_order.hpp"
 
 #include "schemes/slab_integrals.hpp"
+#include "tables/fast_second_order.hpp"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace raytruth {
@@ -78,10 +78,16 @@ Certified SecondOrderSlabs::certified(const std::array<double, 3>& scalars) {
 Table3<float> second_order_table(const PiecewiseLinear& transfer, const TableAxes& axes, Emission emission,
                                  const SecondOrderMethod& method) {
   Table3<float> table(axes);
-  const auto* const iterations = std::get_if<Iterations>(&method);
-  if (iterations != nullptr && emission == Emission::associated && is_linear_between_entries(transfer, axes)) {
-    fill_second_order_table(table, transfer, *iterations, *slab_kernel_versions().front());
-    return table;
+  if (emission == Emission::associated && is_linear_between_entries(transfer, axes)) {
+    const SlabKernels& kernels = *slab_kernel_versions().front();
+    if (const auto* const iterations = std::get_if<Iterations>(&method)) {
+      fill_second_order_table(table, transfer, *iterations, kernels);
+      return table;
+    }
+    if (std::holds_alternative<Ideal>(method)) {
+      fill_exact_second_order_table(table, transfer, kernels);
+      return table;
+    }
   }
   tbb::parallel_for(std::size_t{0}, axes.size, [&](std::size_t back) {
     SecondOrderSlabs slab(transfer, axes, emission);
@@ -91,63 +97,6 @@ Table3<float> second_order_table(const PiecewiseLinear& transfer, const TableAxe
                   slab({axes.scalar(front), axes.scalar(middle), axes.scalar(back)}, method).cast<float>());
   });
   return table;
-}
-
-bool is_linear_between_entries(const PiecewiseLinear& transfer, const TableAxes& axes) {
-  const auto& points = transfer.points();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double place = (points[i].s - axes.low) / (axes.high - axes.low) * static_cast<double>(axes.size - 1);
-    if (std::abs(place - std::round(place)) > 1e-9) return false;
-    if (i > 0 && points[i - 1].s == points[i].s) return false;
-  }
-  return true;
-}
-
-void fill_second_order_table(Table3<float>& table, const PiecewiseLinear& transfer, const Iterations& iterations,
-                             const SlabKernels& kernels) {
-  const TableAxes& axes = table.axes;
-  constexpr std::size_t padding = 16;
-  constexpr double most_rate = 0.5;
-  const std::size_t n = axes.size;
-  const double step = axes.length / iterations.count;
-
-  // The rate and three channels, each with its differences behind it.
-  std::array<std::vector<float>, 4> values;
-  std::array<std::vector<float>, 4> differences;
-  for (auto* const lists : {&values, &differences})
-    for (auto& list : *lists) list.resize(n + padding);
-  double largest_rate = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Optics optics = transfer.at(axes.scalar(i));
-    const double rate = optics.extinction * step * std::numbers::log2e;
-    largest_rate = std::max(largest_rate, rate);
-    values[3][i] = static_cast<float>(rate);
-    for (std::size_t c = 0; c < 3; ++c) values[c][i] = static_cast<float>(optics.color[static_cast<Eigen::Index>(c)]);
-  }
-  for (std::size_t c = 0; c < 4; ++c)
-    for (std::size_t i = 0; i + 1 < n; ++i) differences[c][i] = values[c][i + 1] - values[c][i];
-  const TransferEntries entries{
-      .count = n,
-      .rate = values[3].data(),
-      .rate_difference = differences[3].data(),
-      .color = {values[0].data(), values[1].data(), values[2].data()},
-      .color_difference = {differences[0].data(), differences[1].data(), differences[2].data()}};
-  std::array<std::vector<float>, 3> weights;
-  for (int k = 0; k < iterations.count; ++k) {
-    const double t = (k + (iterations.is_left ? 0 : 0.5)) / iterations.count;
-    weights[0].push_back(static_cast<float>((1 - t) * (1 - 2 * t)));
-    weights[1].push_back(static_cast<float>(4 * t * (1 - t)));
-    weights[2].push_back(static_cast<float>(t * (2 * t - 1)));
-  }
-  const SecondOrderSteps steps{.count = weights[0].size(),
-                               .front_weight = weights[0].data(),
-                               .middle_weight = weights[1].data(),
-                               .back_weight = weights[2].data(),
-                               .is_thin = largest_rate <= most_rate};
-  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t back) {
-    for (std::size_t middle = 0; middle < n; ++middle)
-      kernels.second_order_row(entries, steps, middle, back, table.texel(0, middle, back));
-  });
 }
 
 }  // namespace raytruth

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "core/chain.hpp"
-#include "kernels/slab_kernels.hpp"
 #include "reference/certified.hpp"
 #include "reference/ray_integral.hpp"
 #include "schemes/integral_scheme.hpp"
@@ -66,18 +65,9 @@ class SecondOrderSlabs {
 PiecewiseLinear clamped(const PiecewiseLinear& transfer, double low, double high);
 
 /// The table of all slabs. Throws InputError as Table3 and SecondOrderSlabs do. Where `is_linear_between_entries`
-/// allows it, iterations of associated emission go by the kernels, in binary32: errors of some 1e-6.
+/// allows it, iterations and exact slabs of associated emission go by the kernels of fast_second_order.hpp, in
+/// binary32: errors of some 1e-6.
 Table3<float> second_order_table(const PiecewiseLinear& transfer, const TableAxes& axes, Emission emission,
                                  const SecondOrderMethod& method);
-
-/// Whether a transfer function is what its values at the table's entries say, linear in between: all points at entries,
-/// no jumps.
-bool is_linear_between_entries(const PiecewiseLinear& transfer, const TableAxes& axes);
-
-/// Iterations for all entries of a table that has its axes already, by this version of the kernels: memory that is used
-/// again costs less than fresh one. The transfer function is read at the table's entries and linear in between;
-/// emission is associated.
-void fill_second_order_table(Table3<float>& table, const PiecewiseLinear& transfer, const Iterations& iterations,
-                             const SlabKernels& kernels);
 
 }  // namespace raytruth
