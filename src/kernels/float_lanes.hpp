@@ -28,7 +28,7 @@ struct alignas(4 * float_lane_count) FloatLanes {
   using Vector = float __attribute__((vector_size(4 * float_lane_count)));
   using Bits = std::int32_t __attribute__((vector_size(4 * float_lane_count)));
 
-  Vector vector{};
+  Vector vector;
 
   FloatLanes() = default;
   // Implicit: the same number in all lanes.
@@ -126,16 +126,6 @@ inline FloatLanes::Bits lane_numbers() {
   FloatLanes::Bits numbers{};
   for (std::size_t lane = 0; lane < float_lane_count; ++lane) numbers[lane] = static_cast<std::int32_t>(lane);
   return numbers;
-}
-
-/// `a` in the lanes whose number is below `count`, 0 in the others.
-inline FloatLanes first_lanes(std::int32_t count, const FloatLanes& a) {
-  return FloatLanes::of(lane_numbers() < count ? a.vector : FloatLanes::Vector{});
-}
-
-/// `a` in the lanes whose number is at least `first`, 0 in the others.
-inline FloatLanes last_lanes(std::int32_t first, const FloatLanes& a) {
-  return FloatLanes::of(lane_numbers() >= first ? a.vector : FloatLanes::Vector{});
 }
 
 /// p(r) = (2^r - 1) / r for |r| <= 1/2: the polynomial of degree 4 whose largest relative error is least, 4.4e-7.

@@ -95,7 +95,7 @@ class ParabolaLanes {
   ParabolaLanes(const TransferEntries& transfer, const ParabolaRow& row)
       : transfer_(transfer), upper_(static_cast<std::int32_t>(row.upper)) {
     lower_ = multiply_add(FloatLanes(static_cast<float>(row.direction)),
-                          FloatLanes::of(__builtin_convertvector(lane_numbers(), FloatLanes::Vector)),
+                          FloatLanes::of(__builtin_convertvector(lane_places(), FloatLanes::Vector)),
                           FloatLanes(static_cast<float>(row.lower)));
     const FloatLanes height = FloatLanes(static_cast<float>(row.upper)) - lower_;
     const FloatLanes bow = FloatLanes(2.0F * static_cast<float>(row.middle - row.upper)) + height;  // -D
@@ -131,7 +131,10 @@ class ParabolaLanes {
     const ParabolaSlabs above = slabs_;
     go_down(upper_, lowest);
     write(above, rising, falling);
-    return lane_mask(is_too_deep_ & is_asked_);
+    const std::uint32_t too_deep = lane_mask(is_too_deep_ & is_asked_);
+    std::uint32_t by_place = 0;
+    for (std::size_t lane = 0; lane < float_lane_count; ++lane) by_place |= (too_deep >> lane & 1U) << place_of(lane);
+    return by_place;
   }
 
  private:

@@ -8,18 +8,22 @@ namespace raytruth::inline RAYTRUTH_LEVEL {
 template <bool IsThin>
 struct SlabAlgebra {
   using State = LaneSlab;
+  using Crossing = std::array<FloatLanes, 1>;  ///< opacity
+  static constexpr std::ptrdiff_t rows_ahead = 24;
 
   explicit SlabAlgebra(const FloatLanes& /*shares*/) {}
 
-  void put_in_front(State& slab, const LaneInterval& interval) const {
-    const FloatLanes opacity = opacity_of<IsThin>(interval.t);
+  [[nodiscard]] Crossing crossing_of(const FloatLanes& t) const { return {opacity_of<IsThin>(t)}; }
+
+  void put_in_front(State& slab, const Crossing& crossing, const LaneInterval& interval) const {
+    const FloatLanes& opacity = crossing[0];
     const FloatLanes transmittance = FloatLanes(1.0F) - opacity;
     for (std::size_t c = 0; c < 3; ++c) slab[c] = multiply_add(transmittance, slab[c], opacity * interval.color[c]);
     slab[3] = multiply_add(transmittance, slab[3], opacity);
   }
 
-  void put_behind(State& slab, const LaneInterval& interval) const {
-    const FloatLanes seen = (FloatLanes(1.0F) - slab[3]) * opacity_of<IsThin>(interval.t);
+  void put_behind(State& slab, const Crossing& crossing, const LaneInterval& interval) const {
+    const FloatLanes seen = (FloatLanes(1.0F) - slab[3]) * crossing[0];
     for (std::size_t c = 0; c < 3; ++c) slab[c] = multiply_add(seen, interval.color[c], slab[c]);
     slab[3] = slab[3] + seen;
   }

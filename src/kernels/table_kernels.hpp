@@ -24,12 +24,12 @@ struct TableKernels {
   std::size_t band_width;
   /// The entries with first_width <= |j - i| < first_width + band_width on one side of the diagonal (`backwards`: i >
   /// j), into a table of shape (back, front, 4). `buffer` holds slab_floats * band_width floats for each entry of an
-  /// axis.
+  /// axis, and for band_width more.
   void (*subranges)(const TableIntervals&, std::size_t first_width, bool backwards, float* buffer, float* const* table);
-  static constexpr std::size_t slab_floats = 4;
+  static constexpr std::size_t slab_floats = 5;
   /// The same into four tables, of moments k = 0 to 3 (tables/moments.hpp), with `moment_floats`.
   void (*moments)(const TableIntervals&, std::size_t first_width, bool backwards, float* buffer, float* const* tables);
-  static constexpr std::size_t moment_floats = 17;
+  static constexpr std::size_t moment_floats = 21;
 };
 
 /// The versions that this processor can run, the best one first.

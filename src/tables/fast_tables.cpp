@@ -21,11 +21,12 @@ void fit(const TableAxes& axes, Table<float>& table) {
 /// Runs a kernel on all bands. `floats` is what it needs for each slab.
 void run_bands(const DiscreteTransfer& transfer, const TableAxes& axes, std::size_t band_width, std::size_t floats,
                decltype(TableKernels::subranges) kernel, float* const* tables) {
-  const IntervalArrays intervals(transfer, axes.length);
-  tbb::enumerable_thread_specific<std::vector<float>> buffers(floats * band_width * axes.size);
+  const IntervalArrays arrays(transfer, axes.length);
+  const TableIntervals intervals = arrays.view();
+  tbb::enumerable_thread_specific<std::vector<float>> buffers(floats * band_width * (axes.size + band_width));
   const std::size_t bands = (axes.size + band_width - 2) / band_width;
   tbb::parallel_for(std::size_t{0}, 2 * bands, [&](std::size_t i) {
-    kernel(intervals.view(), 1 + i / 2 * band_width, i % 2 == 1, buffers.local().data(), tables);
+    kernel(intervals, 1 + i / 2 * band_width, i % 2 == 1, buffers.local().data(), tables);
   });
 }
 
