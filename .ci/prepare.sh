@@ -52,6 +52,7 @@ install_packages() {
 build() {
   local preset=$1 jobs=$2
   shift 2
+  export CCACHE_SLOPPINESS=pch_defines,time_macros # or ccache passes over what is compiled with a precompiled header
   cmake -S "$top" --preset "$preset" "$@" >&2
   local ninja_options=()
   if [[ $preset == tidy ]]; then
