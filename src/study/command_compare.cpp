@@ -1,8 +1,7 @@
-#include "render/image_error.hpp"
 #include "render/image_file.hpp"
-#include "render/structural_similarity.hpp"
 #include "study/commands.hpp"
 #include "study/output.hpp"
+#include "study/scene_case.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -11,11 +10,6 @@
 namespace raytruth {
 
 namespace {
-
-template <class Number>
-nlohmann::ordered_json or_null(const std::optional<Number>& number) {
-  return number ? nlohmann::ordered_json(*number) : nlohmann::ordered_json(nullptr);
-}
 
 /// |B - A| of each channel, times `gain`.
 Image difference_image(const Image& a, const Image& b, double gain) {
@@ -32,19 +26,10 @@ Image difference_image(const Image& a, const Image& b, double gain) {
 int compare_images(const CompareOptions& options) {
   const Image a = read_image(options.reference);
   const Image b = read_image(options.image);
-  const ImageError error = image_error(b, a);
   nlohmann::ordered_json result{{"reference", std::filesystem::path(options.reference).filename().string()},
                                 {"image", std::filesystem::path(options.image).filename().string()},
-                                {"size", a.size},
-                                {"danskin_hanrahan", nullptr},
-                                {"rmse", error.rmse},
-                                {"psnr", or_null(error.psnr)},
-                                {"psnr_peak", 1},
-                                {"maximum", error.maximum},
-                                {"maximum_pixel", error.place},
-                                {"bias", error.bias},
-                                {"ssim", or_null(structural_similarity(b, a))}};
-  if (error.relative) result["danskin_hanrahan"] = 100 * *error.relative;
+                                {"size", a.size}};
+  result.update(image_error_json(b, a));
   if (!options.difference.empty()) {
     const std::filesystem::path file = options.difference;
     // Differences are no colours, so they are not encoded as such.

@@ -1,6 +1,7 @@
 #include "study/case.hpp"
 #include "study/commands.hpp"
 #include "study/output.hpp"
+#include "study/scene_case.hpp"
 #include "study/slab_case.hpp"
 #include "volume/find_volume.hpp"
 
@@ -9,6 +10,7 @@
 #include <tbb/parallel_for.h>
 #include <nlohmann/json.hpp>
 
+#include <utility>
 #include <variant>
 
 namespace raytruth {
@@ -20,12 +22,17 @@ int evaluate_cases(const EvalOptions& options) {
   const JsonReader document = JsonReader::from_file(options.file);
   CaseReader reader(volume_folders(options.data));
   std::vector<std::string> warnings;
-  std::vector<std::variant<Case, SlabCase>> cases;
+  std::vector<std::variant<Case, SlabCase, SceneFile>> cases;
   for (const JsonReader& item : document.is_array() ? document.items() : std::vector{document})
-    if (is_slab_case(item))
+    if (is_slab_case(item)) {
       cases.emplace_back(read_slab_case(item, warnings));
-    else
+    } else if (is_scene_case(item)) {
+      SceneFile scene = read_scene(item, {.folders = volume_folders(options.data), .opacity = {}});
+      warnings.insert(warnings.end(), scene.warnings.begin(), scene.warnings.end());
+      cases.emplace_back(std::move(scene));
+    } else {
       cases.emplace_back(reader.read(item, warnings));
+    }
   for (const std::string& warning : warnings) say(warning);
 
   std::vector<nlohmann::ordered_json> answers(cases.size());

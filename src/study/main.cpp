@@ -122,8 +122,9 @@ class CommandLine {
   }
 
   void add_eval() {
-    auto& command = *add_command("eval", "Evaluate one ray, or an array of rays, by the schemes they name",
-                                 "raytruth eval ray.json", eval_, evaluate_cases);
+    auto& command =
+        *add_command("eval", "Evaluate one ray, slab or scene, or an array of them, by the schemes they name",
+                     "raytruth eval ray.json", eval_, evaluate_cases);
     command.add_option("case", eval_.file, "JSON file; '-' is standard input")->required();
     add_threads(command, eval_.threads);
     add_data(command, eval_.data);

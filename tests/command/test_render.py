@@ -178,6 +178,27 @@ class Images(ProgramTest):
                 self.output_of("render", scene, "-o", f"{threads}.npy", "-j", threads)
             self.assertEqual((self.folder / "1.npy").read_bytes(), (self.folder / "2.npy").read_bytes())
 
+    def test_eval_judges_a_scene(self):
+        light = {"light": [1, 2, -3], "ambient": 0.1, "diffuse": 1, "specular": 0.5, "shininess": 10}
+        for scheme, options in (("reference", {}), ("order1", {"step": 1, "table": {"size": 32}}),
+                                ("order1", {"step": 1, "shading": {**light, "method": "linear_gradient"}})):
+            scene = {**NOISE, "scheme": scheme, **options}
+            answer = self.json_of("eval", self.write("scene.json", scene))
+            self.assertEqual((answer["size"], answer["scheme"]), ([24, 20], scheme))
+            self.assertEqual(list(answer["reference"]), ["measured_radius" if "shading" in options else "error_bound"])
+            self.assertEqual("error" in answer, scheme != "reference")
+            if scheme == "reference":
+                continue
+            # The same as by hand, but for the binary32 of the files.
+            truth = {**NOISE} | ({"shading": light} if "shading" in options else {})
+            self.render(truth, "truth.npy")
+            self.render(scene, "image.npy")
+            by_hand = self.json_of("compare", "truth.npy", "image.npy")
+            for name in ("rmse", "maximum", "danskin_hanrahan", "ssim"):
+                self.assertAlmostEqual(answer["error"][name], by_hand[name], delta=1e-5 * max(1, abs(by_hand[name])))
+        done = self.run_program("eval", self.write("scene.json", changed(NOISE, "/camera/size", [0, 1])))
+        self.assert_refused(done, "scene.json", "/camera/size")
+
     def test_corrected_blocks_change_nothing(self):
         transfer = {"points": [{"s": s, "extinction": e, "color": [1, s, 0]} for s, e in ((0.55, 0), (0.7, 1), (1, 1))]}
         scene = {**NOISE, "transfer_function": transfer}

@@ -129,9 +129,14 @@ class Agreement(ProgramTest):
         schema = validator("scene")
         scene = {**test_render.SCENE, "scheme": "order1", "step": 0.5, "table": {"size": 16, "builder": "exact", "format": "unorm8", "filter": "nearest"},
                  "early_termination": 0.9, "empty_space": {"block": 4, "bounds": "printed"}, "reconstruction": "catmull_rom", "emission": "plain"}
-        for document in (test_render.SCENE, test_render.NOISE, scene):
+        gooch = {"light": [0, 0, 1], "gooch": {"cool": [0, 0, 1], "warm_share": 0.5}}
+        lit_table = {**test_render.SCENE, "scheme": "order1", "table": {"size": 8}, "shading": {**gooch, "method": "slerp"}}
+        second_order = {**test_render.SCENE, "scheme": "order2", "table": {"size": 8, "builder": "second_order_iterations", "iterations": 8}}
+        for document in (test_render.SCENE, test_render.NOISE, scene, {**test_render.SCENE, "shading": gooch}, lit_table, second_order):
             self.assertTrue(schema.is_valid(document))
+            self.assertTrue(validator("case").is_valid(document))
             self.assertTrue(self.program_accepts("render", document))
+            self.assertTrue(self.program_accepts("eval", document))
         self.assert_agreement("render", schema, mutations(scene), BEYOND_SCENE_SCHEMA)
         shading = {"method": "quadratic_arc", "light": [0, 0, -1], "ambient": 0.25, "diffuse": 1, "specular": 1, "shininess": 10,
                    "highlight": "cone", "negative": "mirror", "normal": "gradient"}
