@@ -66,8 +66,10 @@ PieceIntegral<> integrate_by_halves(const LinearPiece<Degree>& piece, bool assoc
   const auto [front, back] = halves(piece);
   PieceIntegral<> result = integrate_by_halves(front, associated, whole, level + 1);
   const double front_depth = result.depth - result.depth_error;
+  // Nor is what lies behind an unknown depth computed: either half might be so deep, at every level.
+  const bool is_behind_seen = front_depth <= opaque_depth && result.depth_error <= opaque_depth;
   const PieceIntegral<> behind =
-      front_depth > opaque_depth ? crude(back, associated) : integrate_by_halves(back, associated, whole, level + 1);
+      is_behind_seen ? integrate_by_halves(back, associated, whole, level + 1) : crude(back, associated);
   const double transmittance = exponential(-result.depth);
   const double most_transmittance = slack * exponential(-std::max(front_depth, 0.0));
   result.weight_0 += transmittance * behind.weight_0;

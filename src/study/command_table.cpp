@@ -38,7 +38,6 @@ Json description(const TableCase& asked, const MadeTable& table, const std::file
              "(i + 1/2) / n"}};
   if (asked.transfer) text["colors"] = "opacity-weighted: composite with C += T C_slab, T *= 1 - opacity";
   text["error"] = table.error;
-  if (table.error.is_null()) text["why"] = "the certified reference has colour and opacity of whole slabs only";
   text["case"] = asked.json.json();
   text["build"] = build_identity();
   return text;

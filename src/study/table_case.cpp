@@ -3,7 +3,9 @@
 #include "catalogue.hpp"
 #include "core/random.hpp"
 #include "reference/ray_integral.hpp"
+#include "shading/slab_reference.hpp"
 #include "study/read_transfer_function.hpp"
+#include "tables/exact.hpp"
 #include "tables/partial_pre_integration.hpp"
 #include "tables/table_error.hpp"
 
@@ -11,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace raytruth {
 
@@ -23,18 +26,13 @@ constexpr std::int64_t largest_size = 4096;
 constexpr std::int64_t most_iterations = 65536;
 constexpr std::size_t cells_judged = 32;  ///< along each axis
 constexpr std::uint64_t places_judged = 4096;
-constexpr std::uint64_t seed = 1;  ///< of the places
+constexpr std::uint64_t weighted_places_judged = 256;  // each is proven by itself, in milliseconds
+constexpr std::uint64_t seed = 1;                      ///< of the places
 
 constexpr std::string_view by_iterations = "second_order_iterations";
 constexpr std::string_view by_nyquist = "second_order_nyquist";
 constexpr std::string_view exactly = "second_order_exact";
 constexpr std::string_view partially = "partial_pre_integration";
-
-/// Whether a builder's entries are colour and opacity of the slab itself, and no part or moment of it.
-bool holds_slabs(const TableBuilder& builder) {
-  const std::string_view name = builder.name;
-  return !name.starts_with("front_weighted") && !name.starts_with("back_weighted") && !name.starts_with("moment");
-}
 
 void read_slabs(const JsonReader& json, TableCase& asked, std::vector<std::string>& warnings) {
   asked.transfer = read_transfer_function(json.at("transfer_function"), warnings);
@@ -50,40 +48,113 @@ void read_slabs(const JsonReader& json, TableCase& asked, std::vector<std::strin
     check(asked.axes);
     return 0;
   });
+  // Whatever the builder: its error is measured against exact slabs.
+  json.at("length").blame_for([&] {
+    check_depth(*asked.transfer, asked.axes);
+    return 0;
+  });
 }
 
 Json place_json(const std::array<double, 2>& scalars) { return {{"front", scalars[0]}, {"back", scalars[1]}}; }
 
-/// Largest, mean and root mean square error of what look_up(scalars) finds, at random places.
+/// Errors at random places, collected one by one.
+class ErrorsAtPlaces {
+ public:
+  void add(const Vec4& found, const Vec4& truth, double radius) {
+    const Vec4 error = (found - truth).abs();
+    largest_ = std::max(largest_, error.maxCoeff());
+    sum_ += error.mean();
+    sum_of_squares_ += error.square().mean();
+    radius_ = std::max(radius_, radius);
+    ++count_;
+  }
+  [[nodiscard]] Json json(std::string_view look_up) const {
+    const auto count = static_cast<double>(count_);
+    return {{"look_up", look_up}, {"max", largest_},
+            {"l1", sum_ / count}, {"l2", std::sqrt(sum_of_squares_ / count)},
+            {"places", count_},   {"error_bound", radius_}};
+  }
+
+ private:
+  double largest_ = 0;
+  double sum_ = 0;
+  double sum_of_squares_ = 0;
+  double radius_ = 0;
+  std::uint64_t count_ = 0;
+};
+
+template <std::size_t Count>
+std::array<double, Count> random_scalars(const TableAxes& axes, std::uint64_t place) {
+  const auto random = random_numbers(seed, RandomStream::points, place);
+  std::array<double, Count> scalars{};
+  for (std::size_t axis = 0; axis < Count; ++axis) scalars[axis] = axes.low + random[axis] * (axes.high - axes.low);
+  return scalars;
+}
+
+Vec4 in_format(const TableFormat& format, const Vec4& entry) {
+  return entry.unaryExpr([&](double value) { return stored(format, value); });
+}
+
 Json second_order_error(const TableCase& asked, const Table3<float>& table) {
   SecondOrderSlabs slabs(*asked.transfer, asked.axes, asked.emission);
-  double largest = 0;
-  double sum = 0;
-  double sum_of_squares = 0;
-  double radius = 0;
+  ErrorsAtPlaces errors;
   for (std::uint64_t i = 0; i < places_judged; ++i) {
-    const auto random = random_numbers(seed, RandomStream::points, i);
-    std::array<double, 3> scalars{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      scalars[axis] = asked.axes.low + random[axis] * (asked.axes.high - asked.axes.low);
+    const auto scalars = random_scalars<3>(asked.axes, i);
     const Certified truth = slabs.certified(scalars);
     const Vec4 found = trilinear<double>(
         asked.axes,
         [&](std::size_t front, std::size_t middle, std::size_t back) -> Vec4 {
-          const Vec4 entry = table.at(front, middle, back).cast<double>();
-          return entry.unaryExpr([&](double value) { return stored(asked.format, value); });
+          return in_format(asked.format, table.at(front, middle, back).cast<double>());
         },
         scalars);
-    const Vec4 error = (found - Vec4(truth.color[0], truth.color[1], truth.color[2], truth.opacity)).abs();
-    largest = std::max(largest, error.maxCoeff());
-    sum += error.mean();
-    sum_of_squares += error.square().mean();
-    radius = std::max(radius, truth.radius);
+    errors.add(found, {truth.color[0], truth.color[1], truth.color[2], truth.opacity}, truth.radius);
   }
-  const auto count = static_cast<double>(places_judged);
-  return {{"look_up", "trilinear"},  {"max", largest},
-          {"l1", sum / count},       {"l2", std::sqrt(sum_of_squares / count)},
-          {"places", places_judged}, {"error_bound", radius}};
+  return errors.json("trilinear");
+}
+
+/// A slab's weighted light in RGB and its opacity, by ball arithmetic: as the diffuse light of a surface whose cosine
+/// is the weight. The tent is 1 - |2 x - 1|, light without shading less that of a surface lit from both sides.
+CertifiedRadiance weighted_light(const ShadedSlab& slab, const PiecewiseLinear& transfer, Emission emission,
+                                 LightWeight weight) {
+  Cubic cosine{1, 0, 0, 0};
+  if (weight == LightWeight::to_front) cosine = {1, -1, 0, 0};
+  if (weight == LightWeight::x) cosine = {0, 1, 0, 0};
+  if (weight == LightWeight::x_squared) cosine = {0, 0, 1, 0};
+  if (weight == LightWeight::x_cubed) cosine = {0, 0, 0, 1};
+  if (weight == LightWeight::tent) cosine = {-1, 2, 0, 0};
+  const Lighting lighting{
+      .ambient = 1, .diffuse = 1, .negative = weight == LightWeight::tent ? Negative::mirror : Negative::none};
+  CertifiedRadiance light = cubic_reference(slab, transfer, emission, lighting, cosine, {1, 0, 0, 0});
+  if (weight == LightWeight::tent) {
+    light.diffuse = light.ambient - light.diffuse;
+    light.radius *= 2;
+  }
+  return light;
+}
+
+Json weighted_error(const TableCase& asked, const Table<double>& table, const TableContent& content) {
+  std::vector<TransferPoint> points = asked.transfer->points();
+  for (TransferPoint& point : points) point.optics.color = {1, 1, 1};
+  const PiecewiseLinear white(std::move(points));
+  ErrorsAtPlaces errors;
+  for (std::uint64_t i = 0; i < weighted_places_judged; ++i) {
+    const auto scalars = random_scalars<2>(asked.axes, i);
+    const ShadedSlab slab{.front = scalars[0], .back = scalars[1], .length = asked.axes.length};
+    const auto light = weighted_light(slab, content.is_white ? white : *asked.transfer, asked.emission, content.weight);
+    Vec4 truth(light.diffuse[0], light.diffuse[1], light.diffuse[2], light.opacity);
+    double radius = light.radius;
+    if (content.has_white_as_alpha) {
+      const auto of_white = weighted_light(slab, white, asked.emission, content.weight);
+      truth[3] = of_white.diffuse[0];
+      radius = std::max(radius, of_white.radius);
+    }
+    const Vec4 found = bilinear<double>(
+        asked.axes,
+        [&](std::size_t front, std::size_t back) -> Vec4 { return in_format(asked.format, table.at(front, back)); },
+        scalars);
+    errors.add(found, truth, radius);
+  }
+  return errors.json("bilinear");
 }
 
 Json linear_error(const TableCase& asked, const Table<double>& table) {
@@ -104,10 +175,11 @@ Json linear_error(const TableCase& asked, const Table<double>& table) {
 MadeTable linear_table(const TableCase& asked, const TableBuilder& builder) {
   Table<double> table = builder.make(*asked.transfer, asked.axes, asked.emission);
   const std::size_t n = asked.axes.size;
-  return {.shape = {n, n, 4},
-          .values = table.values,
-          .axes = {"back scalar", "front scalar", "red, green, blue, opacity"},
-          .error = holds_slabs(builder) ? linear_error(asked, table) : Json()};
+  return {
+      .shape = {n, n, 4},
+      .values = table.values,
+      .axes = {"back scalar", "front scalar", "red, green, blue, opacity"},
+      .error = builder.content.is_slab() ? linear_error(asked, table) : weighted_error(asked, table, builder.content)};
 }
 
 MadeTable parabolic_table(const TableCase& asked, const SecondOrderMethod& method) {

@@ -36,10 +36,9 @@ TableCase read_table_case(const JsonReader& json, std::vector<std::string>& warn
 /// A table's numbers in C order, and what is known of it.
 struct MadeTable {
   std::vector<std::size_t> shape;
-  std::vector<double> values;   ///< not rounded to the format yet
-  nlohmann::ordered_json axes;  ///< what each of them means
-  nlohmann::ordered_json
-      error;  ///< of look-ups in the format's numbers; null: there is nothing certified to compare with
+  std::vector<double> values;    ///< not rounded to the format yet
+  nlohmann::ordered_json axes;   ///< what each of them means
+  nlohmann::ordered_json error;  ///< of look-ups in the format's numbers, against proven values
 };
 
 MadeTable make_table(const TableCase& asked);

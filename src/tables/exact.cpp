@@ -1,13 +1,27 @@
 #include "tables/exact.hpp"
 
+#include "core/error.hpp"
 #include "tables/discrete_transfer.hpp"
 #include "tables/interval_slabs.hpp"
 #include "tables/subrange.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace raytruth {
+
+void check_depth(const PiecewiseLinear& transfer, const TableAxes& axes) {
+  double largest = 0;
+  for (const TransferPoint& point : transfer.points()) largest = std::max(largest, point.optics.extinction);
+  if (largest * axes.length > largest_exact_depth)
+    throw InputError(fmt::format("found slabs of length {}, of an optical depth of up to {}; at most {} is allowed",
+                                 axes.length, largest * axes.length, largest_exact_depth));
+}
 
 Table<double> exact_table(const PiecewiseLinear& transfer, const TableAxes& axes, Emission emission) {
   Table<double> table(axes);
+  check_depth(transfer, axes);
   const IntervalSlabs slabs(transfer, axes, emission);
   composite_subranges(table, [&](std::size_t width, bool backwards) {
     return slabs(axes.length / static_cast<double>(width), backwards);

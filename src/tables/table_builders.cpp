@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstddef>
 #include <utility>
 
@@ -26,20 +27,26 @@ TableBuilder weighted(const char* name, std::string_view summary) {
   return {.name = name,
           .summary = summary,
           .source = "Lum 2004, section 4.3",
-          .make = [](Transfer transfer, Axes axes, Emission emission) {
-            const DiscreteTransfer means = interval_means(transfer, axes, emission);
-            return Make(IsWhite ? whitened(means) : means, axes).*Which;
-          }};
+          .make =
+              [](Transfer transfer, Axes axes, Emission emission) {
+                const DiscreteTransfer means = interval_means(transfer, axes, emission);
+                return Make(IsWhite ? whitened(means) : means, axes).*Which;
+              },
+          .content = {.weight = Which == &WeightedTables<double>::front ? LightWeight::to_front : LightWeight::x,
+                      .is_white = IsWhite}};
 }
 
 template <std::size_t K>
 TableBuilder moment() {
+  constexpr std::array powers{LightWeight::one, LightWeight::x, LightWeight::x_squared, LightWeight::x_cubed};
   return {.name = fmt::format("moment_{}", K),
           .summary = "light times the k-th power of s in RGB, the same of white light as the fourth channel",
           .source = "Guetat 2010, eqs. 8 and 10",
-          .make = [](Transfer transfer, Axes axes, Emission emission) {
-            return moment_tables(interval_means(transfer, axes, emission), axes).moments[K];
-          }};
+          .make =
+              [](Transfer transfer, Axes axes, Emission emission) {
+                return moment_tables(interval_means(transfer, axes, emission), axes).moments[K];
+              },
+          .content = {.weight = powers[K], .has_white_as_alpha = true}};
 }
 
 template <DissertationAlgorithm Algorithm, DistanceInterpolation Interpolation>
@@ -109,12 +116,13 @@ std::vector<TableBuilder> make_table_builders() {
   list.push_back(moment<1>());
   list.push_back(moment<2>());
   list.push_back(moment<3>());
-  list.push_back({.name = "moment_tent",
-                  .summary = "white light weighted by a tent over the slab, and the opacity",
-                  .source = "Guetat 2010, section 5.2",
-                  .make = [](Transfer transfer, Axes axes, Emission emission) {
-                    return moment_tables(interval_means(transfer, axes, emission), axes).tent;
-                  }});
+  list.push_back(
+      {.name = "moment_tent",
+       .summary = "white light weighted by a tent over the slab, and the opacity",
+       .source = "Guetat 2010, section 5.2",
+       .make = [](Transfer transfer, Axes axes,
+                  Emission emission) { return moment_tables(interval_means(transfer, axes, emission), axes).tent; },
+       .content = {.weight = LightWeight::tent, .is_white = true}});
   list.push_back(dissertation<DissertationAlgorithm::text, DistanceInterpolation::opacity>(
       "dissertation_text", "incremental over distances 2^j by the recurrence as printed"));
   list.push_back(dissertation<DissertationAlgorithm::pseudo_code, DistanceInterpolation::opacity>(

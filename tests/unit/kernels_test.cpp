@@ -180,6 +180,21 @@ TEST(PieceIntegral, DeepPiecesAreHalvedAndWhatIsHiddenIsBounded) {
   }
 }
 
+// tau = depth x: weight_1 = integral of T less T(1), sqrt(pi / (2 depth)) at such depths, and weight_0 the rest of the
+// opacity, 1. Positions are known to 10^-14, of which depth^(1/2) enters; beyond what can be told the bound says so.
+TEST(PieceIntegral, DeepRampsEndAtAnyDepth) {
+  for (const double depth : {1e4, 1e8, 1e12, 1e20, 1e100, 1e300}) {
+    const LinearPiece<3> piece{.x = {0, 1.0 / 3, 2.0 / 3, 1}, .extinction_at_1 = depth, .length = 1};
+    const double exact = std::sqrt(std::acos(-1.0) / (2 * depth));
+    for (const auto& integral :
+         {integrate(piece, Emission::associated), integrate_scalar(piece, Emission::associated)}) {
+      EXPECT_NEAR(integral.weight_1, exact, integral.weight_error + 1e-15 * exact) << depth;
+      EXPECT_NEAR(integral.weight_0, 1 - exact, integral.weight_error + 1e-16) << depth;
+      EXPECT_LE(integral.weight_error, depth <= 1e12 ? 1e-14 * std::sqrt(depth) : HUGE_VAL) << depth;
+    }
+  }
+}
+
 TEST(Kernels, EightSideBySideEncloseToo) {
   LinearPiece<3, Eight> pieces;
   std::array<LinearPiece<3>, lane_count> singly;

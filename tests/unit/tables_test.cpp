@@ -204,6 +204,12 @@ TEST(ExactTable, HasTheClosedFormsOfARamp) {
   }
 }
 
+TEST(ExactTable, RefusesWhatIsTooDeepToTell) {
+  const TableAxes deep{.size = 3, .length = largest_exact_depth};
+  EXPECT_NO_THROW(exact_table(ramp_transfer(1), deep, Emission::associated));
+  EXPECT_THROW(exact_table(ramp_transfer(1.001), deep, Emission::associated), InputError);
+}
+
 TEST(ExactTable, IsCertifiedEntryByEntry) {
   // 7 transfer functions, 2 emissions, 2 extinctions, 358 entries of each: more than 10^4.
   constexpr std::size_t entries = 358;
