@@ -40,7 +40,8 @@ std::vector<fs::path> reports_in(const fs::path& folder) {
 /// The benchmark's name without what Google Benchmark says about how it took the time.
 std::string plain_name(const JsonReader& entry) {
   std::string name = entry.at("run_name").text();
-  if (const auto place = name.find("/manual_time"); place != std::string::npos) name.resize(place);
+  for (const char* const option : {"/min_time:", "/manual_time"})
+    if (const auto place = name.find(option); place != std::string::npos) name.resize(place);
   return name;
 }
 
