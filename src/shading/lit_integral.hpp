@@ -36,8 +36,8 @@ struct LitSum {
 /// where a function gives the `PointLight` of every point. A piece is cut where the scalar crosses the transfer
 /// function's points and where the light is not smooth; tau is a polynomial in between and the optical depth exact but
 /// for rounding. Every panel is integrated by the rules of Gauss and Kronrod of 7 and 15 nodes and halved until they
-/// differ by no more than `tolerance`. The sum of these differences is an estimate that is far too large where the
-/// light is smooth: it is measured, not proven.
+/// differ by no more than `tolerance` times max(1, its light). The sum of these differences is an estimate that is far
+/// too large where the light is smooth: it is measured, not proven.
 ///
 /// Holds buffers: one object per thread.
 template <int Degree>
@@ -143,14 +143,16 @@ class LitIntegral {
       if (i % 2 == 0) few += gauss_weights[i / 2] * pair;
     }
     const double difference = half * (all - few).abs().maxCoeff();
-    if (!(difference <= tolerance_) && halvings > 0) {
+    // Curves between nearly opposite normals are long, and their light may be 10^9, or overflow.
+    const double allowed = tolerance_ * std::max(1.0, half * all.abs().maxCoeff());
+    if (difference > allowed && halvings > 0) {
       add_panel(matter, begin, middle, light, halvings - 1, sum);
       add_panel(matter, middle, end, light, halvings - 1, sum);
       return;
     }
     sum.color += half * all;
     sum.difference += difference;
-    sum.is_resolved = sum.is_resolved && difference <= tolerance_;
+    sum.is_resolved = sum.is_resolved && difference <= allowed;
   }
 
   LinearIntervals intervals_;
