@@ -466,7 +466,7 @@ struct Renderer::Parts {
       return;
     }
     table = table_of(scene);
-    if (Degree == 3 && scene.step) {
+    if (Degree == 3 && scene.step && !scene.table->in_binary64) {
       table_march.emplace(scene.grid, *table, scene.table->filter, *scene.step, scene.opaque);
       make_renderer = [this, occupied] {
         return [this, parts_of = PartsOfRay(scene.grid.size, occupied)](const PixelRay& pixel) mutable -> PixelLight {

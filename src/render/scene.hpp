@@ -42,6 +42,7 @@ struct SceneTable {
   std::size_t size = 256;
   TableFormat format = table_formats[1];
   TableFilter filter = TableFilter::linear;
+  bool in_binary64 = false;  ///< also where binary32 is faster
 };
 
 /// Blocks that are skipped where their min-max ranges are clear.

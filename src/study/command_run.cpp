@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 
 namespace raytruth {
 
@@ -106,6 +107,8 @@ class UnitRunner {
         }
       });
     }
+    for_each_measure(true,
+                     [&](const Measure& measure, const JsonReader& options) { add_conclusions(measure, options); });
     for_each_measure(false, [&](const Measure& measure, const JsonReader& options) {
       for (std::int64_t block = 0; block < blocks_of(measure, options); ++block) {
         const std::string suffix = measure.blocks != nullptr ? fmt::format("/{}", block) : "";
@@ -135,6 +138,15 @@ class UnitRunner {
       count += measure.of_fields ? experiment.fields.size() : static_cast<std::size_t>(blocks_of(measure, options));
     }
     return count;
+  }
+
+  void add_conclusions(const Measure& measure, const JsonReader& options) {
+    if (measure.conclusions == nullptr) return;
+    std::vector<Row> of_fields;
+    std::copy_if(findings_.rows.begin(), findings_.rows.end(), std::back_inserter(of_fields),
+                 [&measure](const Row& row) { return cell(row, "measure") == Value(std::string(measure.name)); });
+    for (Row& row : measure.conclusions(experiment_, options, of_fields))
+      findings_.rows.push_back(complete_row(measure.name, {}, std::move(row)));
   }
 
   /// What the unit comes to, from the journal or by doing it; null where it is refused.

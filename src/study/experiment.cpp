@@ -175,7 +175,7 @@ void check_range(const JsonReader& json) {
 
 void check_panel(const JsonReader& json, const RowNames& names) {
   const std::vector<std::string_view> columns(names.columns.begin(), names.columns.end());
-  const std::string kind = json.at("kind").word({"quantiles", "points", "lines", "image"});
+  const std::string kind = json.at("kind").word({"quantiles", "points", "lines", "scatter", "image"});
   read_selector(json.at("rows"), names);
   if (kind == "image") {
     json.only({"kind", "rows", "line", "pixels", "is_color", "label"});
@@ -185,16 +185,24 @@ void check_panel(const JsonReader& json, const RowNames& names) {
     return;
   }
   json.at("series").word(columns);
-  if (kind == "lines") {
-    json.only({"kind", "rows", "x", "y", "series", "front", "label_x", "label_y", "log_x", "log_y", "x_range",
-               "y_range", "floor"});
+  if (kind == "lines" || kind == "scatter") {
     for (const char* const column : {"x", "y"}) json.at(column).word(columns);
-    if (const auto front = json.find("front")) front->word(columns);
     for (const char* const label : {"label_x", "label_y"}) json.at(label).text();
     for (const char* const log : {"log_x", "log_y"})
       if (const auto found = json.find(log)) found->boolean();
     for (const char* const range : {"x_range", "y_range"})
       if (const auto found = json.find(range)) check_range(*found);
+  }
+  if (kind == "scatter") {
+    json.only(
+        {"kind", "rows", "x", "y", "series", "label_x", "label_y", "log_x", "log_y", "x_range", "y_range", "diagonal"});
+    if (const auto diagonal = json.find("diagonal")) diagonal->boolean();
+    return;
+  }
+  if (kind == "lines") {
+    json.only({"kind", "rows", "x", "y", "series", "front", "label_x", "label_y", "log_x", "log_y", "x_range",
+               "y_range", "floor"});
+    if (const auto front = json.find("front")) front->word(columns);
     if (const auto floor = json.find("floor")) floor->number();
     return;
   }

@@ -26,7 +26,15 @@ struct Measure {
   std::int64_t (*blocks)(const JsonReader& options) = nullptr;
   std::vector<Row> (*block_rows)(const Experiment&, const JsonReader& options, std::int64_t block) = nullptr;
   bool uses_gl = false;
+  /// What the rows of all fields come to together: rows of no field, behind those.
+  std::vector<Row> (*conclusions)(const Experiment&, const JsonReader& options, const std::vector<Row>& rows) = nullptr;
 };
+
+/// A measure of fields that concludes something from all of them.
+constexpr Measure with_conclusions(Measure measure, decltype(Measure::conclusions) conclusions) {
+  measure.conclusions = conclusions;
+  return measure;
+}
 
 /// A measure that runs shaders.
 constexpr Measure with_gl(Measure measure) {
@@ -158,6 +166,14 @@ std::vector<Row> images_rows(const Experiment& experiment, const JsonReader& opt
 std::vector<Column> costs_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> costs_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
+std::vector<Column> error_waterfall_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> error_waterfall_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+
+std::vector<Column> optimal_table_columns(const Experiment& experiment, const JsonReader& options);
+std::vector<Row> optimal_table_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+std::vector<Row> optimal_table_conclusions(const Experiment& experiment, const JsonReader& options,
+                                           const std::vector<Row>& rows_of_fields);
+
 inline constexpr std::array measures{
     Measure{"signal_error", "xi and xi_max of every scheme along random rays: quantiles, and ratios between schemes",
             true, signal_error_columns, signal_error_rows},
@@ -239,6 +255,12 @@ inline constexpr std::array measures{
             images_rows},
     Measure{"costs", "ratios of times that the benchmarks' reports hold, each of one run", false, costs_columns,
             costs_rows},
+    Measure{"error_waterfall",
+            "what each stage of a renderer adds to an image's error, and what their interaction does", true,
+            error_waterfall_columns, error_waterfall_rows},
+    with_conclusions({"optimal_table", "the smallest table that an image needs, and how well it is predicted", true,
+                      optimal_table_columns, optimal_table_rows},
+                     optimal_table_conclusions),
 };
 
 /// The measure that an item of an experiment's "measures" names. Throws InputError.

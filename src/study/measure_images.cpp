@@ -1,13 +1,13 @@
 #include "catalogue.hpp"
+#include "measures/banding.hpp"
 #include "render/image_error.hpp"
-#include "render/image_file.hpp"
-#include "render/png_file.hpp"
 #include "render/renderer.hpp"
 #include "render/skipped_slabs.hpp"
 #include "schemes/virtual_samples.hpp"
+#include "study/drawing.hpp"
 #include "study/grid_view.hpp"
 #include "study/measure.hpp"
-#include "study/scene.hpp"
+#include "study/pictures.hpp"
 
 #include <fmt/format.h>
 
@@ -23,25 +23,26 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view certified = "certified";
 constexpr double largest_gain = 65536;
+constexpr std::int64_t least_banding_window = 8;
 
-/// What is looked at; its truth is the certified image.
+/// A way to render a view.
+struct Variant {
+  std::string name;
+  Scene drawing;                                 ///< its members that say how to render; the others have no meaning
+  std::optional<FieldKind> reconstruction = {};  ///< none: the view's
+  Json scene = {};                               ///< as the experiment and the view say it
+};
+
+/// What is looked at; its truth is the certified image, or, where it is lit, that of `reference`.
 struct View {
   std::string name;
   std::string field;
   const NamedTransfer* transfer = nullptr;
   GridView camera;
   FieldKind reconstruction = FieldKind::trilinear;
-};
-
-/// By which the truth is made.
-Scene certified_scene() { return {.transfer = PiecewiseLinear(std::vector<TransferPoint>(1))}; }
-
-/// A way to render it.
-struct Variant {
-  std::string name;
-  Scene drawing = certified_scene();             ///< its members that say how to render; the others have no meaning
-  std::optional<FieldKind> reconstruction = {};  ///< none: the view's
-  Json scene = {};                               ///< as the experiment says it
+  Json shading = {};  ///< of its truth, and of its variants but for what they change; null: none
+  Variant truth = {.name = {}, .drawing = {.transfer = PiecewiseLinear(std::vector<TransferPoint>(1))}};
+  std::vector<Variant> variants = {};
 };
 
 /// What a result holds to be looked at: variants' images, and their errors, so many times as bright.
@@ -55,9 +56,9 @@ struct Pictures {
 
 struct Options {
   std::vector<View> views;
-  std::vector<Variant> variants;
   std::vector<std::string> against;    ///< variants that others are compared with, beside the certified image
   std::vector<std::string> baselines;  ///< variants that others are to be better than
+  std::optional<std::int64_t> window;  ///< in pixels, in which banding is looked for
   Pictures pictures;
 };
 
@@ -68,11 +69,10 @@ std::vector<std::string_view> names_of(const std::vector<Named>& list) {
   return names;
 }
 
-/// A name that none of the list has.
-template <class Named>
-std::string read_new_name(const JsonReader& json, const std::vector<Named>& list) {
+/// A name that none of these is.
+template <class Name>
+std::string read_new_name(const JsonReader& json, const std::vector<Name>& names) {
   std::string name = json.text();
-  const auto names = names_of(list);
   if (name == certified || std::find(names.begin(), names.end(), name) != names.end())
     json.refuse_value(fmt::format("a name that nothing else has, nor \"{}\",", certified));
   return name;
@@ -85,7 +85,7 @@ std::vector<std::string> read_words(const JsonReader& json, const std::vector<st
 }
 
 View read_view(const Experiment& experiment, const JsonReader& json, const std::array<std::int64_t, 2>& size) {
-  json.only({"name", "field", "transfer", "camera", "reconstruction"});
+  json.only({"name", "field", "transfer", "camera", "reconstruction", "shading"});
   View view;
   view.field = json.at("field").word(names_of(experiment.fields));
   const std::string transfer = json.at("transfer").word(names_of(experiment.transfers));
@@ -97,47 +97,57 @@ View read_view(const Experiment& experiment, const JsonReader& json, const std::
     view.reconstruction = static_cast<FieldKind>(std::find(field_kind_names.begin(), field_kind_names.end(), word) -
                                                  field_kind_names.begin());
   }
+  Json truth{{"scheme", "reference"}};
+  if (const auto shading = json.find("shading")) truth["shading"] = view.shading = shading->json();
+  view.truth = {.name = std::string(certified), .drawing = read_drawing(truth, json), .scene = truth};
   return view;
 }
 
-/// Reads what is a scene but for its name and what the view says, as a scene.
-Variant read_variant(const JsonReader& json) {
-  Variant variant;
-  variant.scene = json.json();
+/// Reads what is a scene but for its name, the views that it is for, and what these say.
+Variant read_variant(const JsonReader& json, const View& view) {
   for (const char* const of_view : {"volume", "repair", "transfer_function", "emission", "camera"})
     if (const auto found = json.find(of_view)) found->refuse(fmt::format("a {}", of_view), "what the view leaves open");
-  variant.scene.erase("name");
-  Json scene = variant.scene;
-  scene["volume"] = {{"size", {1, 1, 1}}, {"values", {0}}};
-  scene["transfer_function"] = {{"points", {{{"s", 0}, {"extinction", 0}, {"color", {0, 0, 0}}}}}};
-  scene["camera"] = {{"eye", {0, 0, 1}}, {"target", {0, 0, 0}}, {"up", {0, 1, 0}}, {"height", 1}, {"size", {1, 1}}};
-  const JsonReader reader = JsonReader::from_json(std::move(scene), json);
-  try {
-    variant.drawing = read_scene(reader, {}).scene;
-  } catch (const InputError& error) {
-    // It names the file, and behind it the place in the scene.
-    throw InputError(json.place() + std::string(error.what()).substr(reader.place().size() - 1));
+  Json scene = json.json();
+  scene.erase("name");
+  scene.erase("views");
+  if (!view.shading.is_null()) {
+    Json shading = view.shading;
+    if (scene.contains("shading")) shading.merge_patch(scene["shading"]);
+    scene["shading"] = std::move(shading);
   }
+  Variant variant{.name = json.at("name").text(), .drawing = read_drawing(scene, json), .scene = std::move(scene)};
   if (json.find("reconstruction")) variant.reconstruction = variant.drawing.field;
   return variant;
 }
 
+/// The names of all variants, each of which the views get that it is for.
+std::vector<std::string> read_variants(const JsonReader& json, std::vector<View>& views) {
+  std::vector<std::string> names;
+  for (const JsonReader& item : json.items()) {
+    names.push_back(read_new_name(item.at("name"), names));
+    std::vector<std::string> wanted;
+    if (const auto its_views = item.find("views")) wanted = read_words(*its_views, names_of(views));
+    for (View& view : views)
+      if (wanted.empty() || std::find(wanted.begin(), wanted.end(), view.name) != wanted.end())
+        view.variants.push_back(read_variant(item, view));
+  }
+  return names;
+}
+
 Options read_options(const Experiment& experiment, const JsonReader& json) {
-  json.only({"kind", "size", "views", "variants", "against", "baselines", "pictures"});
+  json.only({"kind", "size", "views", "variants", "against", "baselines", "banding_window", "pictures"});
   need_transfers(experiment);
   Options options;
   const auto size = read_image_size(json.at("size"));
   for (const JsonReader& item : json.at("views").items()) {
-    std::string name = read_new_name(item.at("name"), options.views);
+    std::string name = read_new_name(item.at("name"), names_of(options.views));
     options.views.push_back(read_view(experiment, item, size));
     options.views.back().name = std::move(name);
   }
-  for (const JsonReader& item : json.at("variants").items()) {
-    std::string name = read_new_name(item.at("name"), options.variants);
-    options.variants.push_back(read_variant(item));
-    options.variants.back().name = std::move(name);
-  }
-  auto variants = names_of(options.variants);
+  const std::vector<std::string> names = read_variants(json.at("variants"), options.views);
+  std::vector<std::string_view> variants(names.begin(), names.end());
+  if (const auto window = json.find("banding_window"))
+    options.window = window->integer(least_banding_window, std::min(size[0], size[1]));
   if (const auto against = json.find("against")) options.against = read_words(*against, variants);
   if (const auto baselines = json.find("baselines")) options.baselines = read_words(*baselines, variants);
   if (const auto pictures = json.find("pictures")) {
@@ -162,43 +172,6 @@ Scene scene_of(const View& view, const Variant& variant, const Experiment& exper
   return scene;
 }
 
-PngPixels png_of(const Image& image) {
-  return read_png(image_file(image, ".png"), largest_image_side, image.size[0] * image.size[1]);
-}
-
-/// The stored values of an 8-bit sRGB file, as `raytruth compare` reads them.
-Image frame_of(const Image& image) {
-  const PngPixels stored = png_of(image);
-  Image frame(image.size);
-  for (std::size_t i = 0; i < frame.pixels.size(); ++i)
-    for (std::size_t channel = 0; channel < 4; ++channel)
-      frame.pixels[i][static_cast<Eigen::Index>(channel)] =
-          static_cast<double>(stored.channels[4 * i + channel]) / stored.largest;
-  return frame;
-}
-
-/// A line of pixels in 8-bit sRGB, two hexadecimal digits for each of red, green and blue.
-std::string color_text(const PngPixels& pixels, std::int64_t line) {
-  std::string text;
-  for (std::int64_t i = line * pixels.size[0]; i < (line + 1) * pixels.size[0]; ++i)
-    for (std::size_t channel = 0; channel < 3; ++channel)
-      text += fmt::format("{:02x}", pixels.channels[4 * static_cast<std::size_t>(i) + channel]);
-  return text;
-}
-
-/// The largest error of a line's pixels over their channels, linear, two hexadecimal digits each.
-std::string error_text(const Image& image, const Image& truth, double gain, std::int64_t line) {
-  std::string text;
-  for (std::int64_t i = line * image.size[0]; i < (line + 1) * image.size[0]; ++i) {
-    const auto color = [i](const Image& of) {
-      return of.pixels[static_cast<std::size_t>(i)].head<3>().max(0).min(1).eval();
-    };
-    const double error = (color(image) - color(truth)).abs().maxCoeff();
-    text += fmt::format("{:02x}", std::lround(255 * std::min(1.0, gain * error)));
-  }
-  return text;
-}
-
 /// The variant that differs in nothing but its step, twice as long, or its table, half as large; null if none does.
 const Variant* coarser(const std::vector<Variant>& variants, const Variant& variant) {
   const auto with = [&](const char* pointer, double factor) {
@@ -215,6 +188,8 @@ const Variant* coarser(const std::vector<Variant>& variants, const Variant& vari
 
 /// The column of what a variant is better by than a baseline.
 std::string gain_over(const std::string& baseline) { return "gain_over_" + baseline; }
+std::string closer_than(const std::string& baseline) { return "closer_than_" + baseline; }
+std::string banding_gain_over(const std::string& baseline) { return "banding_gain_over_" + baseline; }
 
 /// A variant's image of a view.
 struct Rendered {
@@ -228,11 +203,11 @@ class ViewRows {
   ViewRows(const Experiment& experiment, const Options& options, const View& view, const Grid& grid)
       : options_(options),
         view_(view),
-        truth_(certified_rendering(experiment, view, grid)),
-        truth_frame_(frame_of(truth_.image)) {
-    for (const Variant& variant : options.variants) {
+        truth_(Renderer(scene_of(view, view.truth, experiment, grid)).render()),
+        truth_frame_(stored_frame(truth_.image)) {
+    for (const Variant& variant : view.variants) {
       Image image = Renderer(scene_of(view, variant, experiment, grid)).render().image;
-      Image frame = frame_of(image);
+      Image frame = stored_frame(image);
       images_.push_back({&variant, std::move(image), std::move(frame)});
     }
     add_certified();
@@ -243,17 +218,14 @@ class ViewRows {
   std::vector<Row> rows;
 
  private:
-  static Rendering certified_rendering(const Experiment& experiment, const View& view, const Grid& grid) {
-    return Renderer(scene_of(view, {.name = std::string(certified)}, experiment, grid)).render();
+  [[nodiscard]] Row keys(std::string_view variant, const Value& against) const {
+    return {{"view", view_.name},
+            {"transfer", view_.transfer->name},
+            {"variant", std::string(variant)},
+            {"against", against}};
   }
 
-  Row& add(std::string_view variant, const Value& against) {
-    return rows.emplace_back(Row{{"view", view_.name},
-                                 {"field", view_.field},
-                                 {"transfer", view_.transfer->name},
-                                 {"variant", std::string(variant)},
-                                 {"against", against}});
-  }
+  Row& add(std::string_view variant, const Value& against) { return rows.emplace_back(keys(variant, against)); }
 
   void add_certified() {
     const auto pixels = static_cast<double>(truth_.image.pixels.size());
@@ -286,10 +258,10 @@ class ViewRows {
     add_skipped(row, scene_of(view_, *rendered.variant, experiment, grid));
     add_error(rendered, &Rendered::frame, certified, truth_frame_);
     for (const std::string& name : options_.against) {
-      const Rendered& other = *image_of(name);
-      if (&other == &rendered) continue;
-      add_error(rendered, &Rendered::image, name, other.image);
-      add_error(rendered, &Rendered::frame, name, other.frame);
+      const Rendered* const other = image_of(name);
+      if (other == nullptr || other == &rendered) continue;
+      add_error(rendered, &Rendered::image, name, other->image);
+      add_error(rendered, &Rendered::frame, name, other->frame);
     }
   }
 
@@ -307,6 +279,8 @@ class ViewRows {
                            {"line", Value()},
                            {"scheme", variant.drawing.scheme},
                            {"step", variant.drawing.step ? Value(*variant.drawing.step) : Value()}});
+    if (const auto& shading = variant.drawing.shading)
+      row.emplace_back("shading", shading->method != nullptr ? shading->method->name : "pointwise");
     if (const auto& table = variant.drawing.table)
       row.insert(row.end(), {{"table_size", static_cast<std::int64_t>(table->size)},
                              {"table_format", std::string(table->format.name)}});
@@ -320,14 +294,56 @@ class ViewRows {
                            {"column", error.place[0]},
                            {"row", error.place[1]},
                            {"bias", error.bias}});
+    if (options_.window && !is_frame) add_banding(row, rendered, reference);
     if (!is_frame)
       row.emplace_back("radius", radii > 0 ? *std::max_element(truth_.radii.begin(), truth_.radii.end()) : 0.0);
-    if (const double coarse = rmse_of(image_of(coarser(options_.variants, variant))); coarse > 0 && error.rmse > 0)
+    if (const double coarse = rmse_of(image_of(coarser(view_.variants, variant))); coarse > 0 && error.rmse > 0)
       row.emplace_back("order", std::log2(coarse / error.rmse));
     for (const std::string& name : options_.baselines)
       if (const double base = rmse_of(image_of(name)); base > 0 && error.rmse > 0)
         row.emplace_back(gain_over(name), 20 * std::log10(base / error.rmse));
+    for (const std::string& name : options_.baselines)
+      if (const Rendered* const base = image_of(name); base != nullptr && base != &rendered)
+        if (const auto share = share_closer(rendered.*kind, base->*kind, reference))
+          row.emplace_back(closer_than(name), 100 * *share);
     return row;
+  }
+
+  /// Of the pixels in which two images differ by more than half a step of 8 bits, those in which the first is closer to
+  /// the reference; by the largest channel.
+  static std::optional<double> share_closer(const Image& image, const Image& other, const Image& reference) {
+    constexpr double half_a_step = 1.0 / 510;
+    std::int64_t different = 0;
+    std::int64_t closer = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+      const auto color = [i](const Image& of) { return of.pixels[i].head<3>().max(0).min(1).eval(); };
+      const auto distance = [](const auto& a, const auto& b) { return (a - b).abs().maxCoeff(); };
+      if (distance(color(image), color(other)) <= half_a_step) continue;
+      ++different;
+      if (distance(color(image), color(reference)) < distance(color(other), color(reference))) ++closer;
+    }
+    if (different == 0) return {};
+    return static_cast<double>(closer) / static_cast<double>(different);
+  }
+
+  void add_banding(Row& row, const Rendered& rendered, const Image& reference) const {
+    const auto banding_of = [&](const Rendered& other) {
+      return banding(signed_error(other.image, reference), reference.size, *options_.window);
+    };
+    const Banding found = banding_of(rendered);
+    row.insert(row.end(), {{"banding", found.share}, {"banding_amplitude", found.amplitude}});
+    for (const std::string& name : options_.baselines)
+      if (const Rendered* const base = image_of(name); base != nullptr && found.amplitude > 0)
+        if (const double amplitude = banding_of(*base).amplitude; amplitude > 0)
+          row.emplace_back(banding_gain_over(name), 20 * std::log10(amplitude / found.amplitude));
+  }
+
+  /// The mean of a pixel's channels.
+  static std::vector<double> signed_error(const Image& image, const Image& reference) {
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+      errors.push_back((image.pixels[i].head<3>().max(0).min(1) - reference.pixels[i].head<3>().max(0).min(1)).mean());
+    return errors;
   }
 
   static double light_of(const Image& image) {
@@ -355,20 +371,12 @@ class ViewRows {
       const Rendered* const rendered = image_of(name);
       return rendered != nullptr ? rendered->image : truth_.image;
     };
-    const std::int64_t lines = truth_.image.size[1];
-    for (const std::string& name : images) {
-      const PngPixels stored = png_of(pixels_of(name));
-      for (std::int64_t line = 0; line < lines; ++line) {
-        Row& row = add(name, {});
-        row.insert(row.end(), {{"line", line}, {"pixels", color_text(stored, line)}});
-      }
-    }
+    const auto is_here = [this](const std::string& name) { return name == certified || image_of(name) != nullptr; };
+    for (const std::string& name : images)
+      if (is_here(name)) add_picture(rows, keys(name, {}), color_lines(pixels_of(name)));
     for (const std::string& name : errors)
-      for (std::int64_t line = 0; line < lines; ++line) {
-        Row& row = add(name, against);
-        row.insert(row.end(),
-                   {{"line", line}, {"pixels", error_text(pixels_of(name), pixels_of(against), gain, line)}});
-      }
+      if (is_here(name) && is_here(against))
+        add_picture(rows, keys(name, against), error_lines(pixels_of(name), pixels_of(against), gain));
   }
 
   const Options& options_;
@@ -398,9 +406,9 @@ std::vector<Column> images_columns(const Experiment& experiment, const JsonReade
        .description = "linear: light over black, clamped to [0, 1]; srgb8: the stored values of 8-bit sRGB frames of "
                       "both images, over 255",
        .is_key = true},
-      {.name = "line", .unit = "", .description = "of a picture, 0 on top; null: of the whole image", .is_key = true},
       {.name = "scheme", .unit = "", .description = "of the variant"},
       {.name = "step", .unit = "voxel", .description = "of its samples; null: at cells' borders and midpoints"},
+      {.name = "shading", .unit = "", .description = "of the variant: how it has normals, or light, between samples"},
       {.name = "table_size", .unit = "", .description = "entries along each axis of its table"},
       {.name = "table_format", .unit = "", .description = "of the table's numbers"},
       {.name = "danskin_hanrahan",
@@ -416,8 +424,9 @@ std::vector<Column> images_columns(const Experiment& experiment, const JsonReade
       {.name = "bias", .unit = "of white", .description = "mean of I - I_r", .radius = "radius"},
       {.name = "radius",
        .unit = "of white",
-       .description = "of the certified image, largest; null for 8-bit frames, whose certified one is rounded from the "
-                      "middle of the enclosure"},
+       .description =
+           "of the certified image, largest; of a lit one measured, not proven; null for 8-bit frames, whose "
+           "certified one is rounded from the middle of the enclosure"},
       {.name = "order",
        .unit = "",
        .description = "log2 of the RMSE, against the same, of the variant with twice the step or half the table, over "
@@ -433,15 +442,33 @@ std::vector<Column> images_columns(const Experiment& experiment, const JsonReade
       {.name = "blocks", .unit = "", .description = "of the volume"},
       {.name = "blocks_skipped", .unit = "", .description = "of these"},
       {.name = "blocks_wrongly_skipped", .unit = "", .description = "skipped ones in which such a slab has its middle"},
-      {.name = "pixels",
-       .unit = "",
-       .description = "of the line, two hexadecimal digits each: of an image red, green and blue in 8-bit sRGB; of a "
-                      "comparison 255 times the gain times the largest error of a channel"},
   };
-  for (const std::string& name : asked.baselines)
+  append(columns, picture_columns());
+  if (asked.window) {
+    columns.push_back({.name = "banding",
+                       .unit = "",
+                       .description = fmt::format(
+                           "how periodic the signed error is, mean of the channels: the largest rise of its "
+                           "autocorrelation over 2, in windows of {0} x {0} pixels; 1: stripes, some {1:.2f}: noise",
+                           *asked.window, 3.0 / static_cast<double>(*asked.window))});
+    columns.push_back({.name = "banding_amplitude",
+                       .unit = "of white",
+                       .description = "the root of banding times the error's mean square about the windows' means"});
+  }
+  for (const std::string& name : asked.baselines) {
     columns.push_back({.name = gain_over(name),
                        .unit = "dB",
                        .description = fmt::format("psnr minus that of {}, against the same", name)});
+    columns.push_back({.name = closer_than(name),
+                       .unit = "%",
+                       .description = fmt::format("of the pixels in which it and {} differ by more than half a step of "
+                                                  "8 bits, those in which it is closer to the reference",
+                                                  name)});
+    if (asked.window)
+      columns.push_back({.name = banding_gain_over(name),
+                         .unit = "dB",
+                         .description = fmt::format("20 log10 of its banding amplitude over this one's: {}", name)});
+  }
   return columns;
 }
 

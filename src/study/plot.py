@@ -249,6 +249,36 @@ def draw_lines(axes, result, panel):
     return 2.4, None
 
 
+def draw_scatter(axes, result, panel):
+    """A marker for each row. `diagonal`: a grey line where x and y are equal."""
+    x, y = panel["x"], panel["y"]
+    rows = [row for row in select(result["rows"], panel["rows"]) if None not in (row.get(x), row.get(y))]
+    handles = []
+    for name, style in styled_series(result, rows, panel["series"]):
+        own = select(rows, {panel["series"]: name})
+        marks = {"color": style["color"], "linestyle": "none", "marker": style["marker"], "markersize": 3.5}
+        marks |= {"markeredgecolor": "black", "markeredgewidth": 0.3}
+        axes.plot([row[x] for row in own], [row[y] for row in own], alpha=0.75, **marks)
+        handles.append(Line2D([], [], **marks, label=words(name)))
+    if panel.get("log_x"):
+        axes.set_xscale("log")
+    if panel.get("log_y"):
+        axes.set_yscale("log")
+    axes.set_xlim(panel.get("x_range"))
+    axes.set_ylim(panel.get("y_range"))
+    for log, axis in (("log_x", axes.xaxis), ("log_y", axes.yaxis)):
+        if panel.get(log):
+            label_log_axis(axis)
+    if panel.get("diagonal"):
+        ends = [min(axes.get_xlim()[0], axes.get_ylim()[0]), max(axes.get_xlim()[1], axes.get_ylim()[1])]
+        axes.plot(ends, ends, color="0.7", linewidth=0.8, zorder=0, scalex=False, scaley=False)
+    axes.grid(color="0.93", linewidth=0.6)
+    axes.set_xlabel(panel["label_x"])
+    axes.set_ylabel(panel["label_y"])
+    show_legend(axes, handles)
+    return 2.4, None
+
+
 def draw_image(axes, result, panel):
     """A picture: a row of the result for each of its lines, 8-bit grays or colours in hexadecimal."""
     lines = [row for row in select(result["rows"], panel["rows"]) if row.get(panel["line"]) is not None]
@@ -264,7 +294,13 @@ def draw_image(axes, result, panel):
     return 2.4, None
 
 
-PANELS = {"quantiles": draw_quantiles, "points": draw_points, "lines": draw_lines, "image": draw_image}
+PANELS = {
+    "quantiles": draw_quantiles,
+    "points": draw_points,
+    "lines": draw_lines,
+    "scatter": draw_scatter,
+    "image": draw_image,
+}
 
 
 def refused_rows(result):

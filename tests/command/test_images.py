@@ -1,6 +1,9 @@
-"""The measure `images`: its numbers are those that `raytruth compare` gives for rendered files."""
+"""The measures of images: their numbers are those that `raytruth compare` gives for rendered files."""
 
 import json
+import unittest
+
+import numpy
 
 from support import ProgramTest
 
@@ -109,9 +112,158 @@ class Images(ProgramTest):
         self.assertEqual(largest, int(255 * min(1, 2 * row["maximum"]) + 0.5))
         self.assertEqual(bytes.fromhex(errors[row["row"]]["pixels"])[row["column"]], largest)
 
+    def test_variants_have_the_light_of_their_view(self):
+        """An image of a lit view is that of a scene whose shading the variant changes in a member."""
+        light = {"light": [0.3, -1, 0.5], "ambient": 0.2, "diffuse": 0.8, "specular": 0.4, "shininess": 10, "highlight": "cone"}
+        lit = json.loads(json.dumps(EXPERIMENT))
+        (measure,) = lit["measures"]
+        measure["views"].append({**measure["views"][0], "name": "lit", "shading": light})
+        measure["variants"] = [
+            {"name": "mean", "scheme": "order1", "step": 1, "views": ["lit"], "shading": {"method": "mean_gradient"}},
+            {"name": "coarse", "scheme": "order1", "step": 2, "shading": {**light, "method": "mean_gradient"}},
+            {"name": "lobe", "scheme": "reference", "views": ["lit"], "shading": {"highlight": "lobe"}},
+        ]
+        measure["banding_window"] = 8
+        measure.pop("pictures")
+        self.write("images.json", json.dumps(lit))
+        self.result = self.json_of("run", "images.json")
+        self.assertEqual({row["variant"] for row in self.rows(view="view")}, {"certified", "coarse"})
+        self.render("truth", {"scheme": "reference", "shading": light})
+        self.render("mean", {"scheme": "order1", "step": 1, "shading": {**light, "method": "mean_gradient"}})
+        self.render("coarse", {"scheme": "order1", "step": 2, "shading": {**light, "method": "mean_gradient"}})
+        self.render("lobe", {"scheme": "reference", "shading": {**light, "highlight": "lobe"}})
+        for variant in ("mean", "lobe"):
+            row = self.row(view="lit", variant=variant, against="certified", frame="linear")
+            expected = self.json_of("compare", "truth.pfm", f"{variant}.pfm")
+            self.assertAlmostEqual(row["rmse"], expected["rmse"], 6)
+            self.assertGreater(row["rmse"], 1e-3)
+        self.assertEqual(self.row(view="lit", variant="lobe", against="certified", frame="linear")["shading"], "pointwise")
+        self.check_share_of_closer_pixels()
+
+    def check_share_of_closer_pixels(self):
+        truth, mean, coarse = (numpy.clip(self.pixels(name), 0, 1) for name in ("truth", "mean", "coarse"))
+        distance = lambda a, b: abs(a - b).max(axis=2)
+        different = distance(mean, coarse) > 1 / 510
+        closer = different & (distance(mean, truth) < distance(coarse, truth))
+        row = self.row(view="lit", variant="mean", against="certified", frame="linear")
+        self.assertTrue(0 < closer.sum() < different.sum())
+        self.assertAlmostEqual(row["closer_than_coarse"], 100 * closer.sum() / different.sum())
+
+    def pixels(self, name):
+        """Of a .pfm file, whose lowest row comes first."""
+        header, size, scale, data = (self.folder / f"{name}.pfm").read_bytes().split(b"\n", 3)
+        self.assertEqual((header, size, float(scale) < 0), (b"PF", b"20 12", True))
+        return numpy.frombuffer(data, "<f4").reshape(12, 20, 3)[::-1].astype(float)
+
     def test_refuses_bad_variants_with_their_place(self):
         for change, place in (({"scheme": "best"}, "scheme"), ({"table": {"size": 1}}, "table/size"), ({"volume": "x"}, "volume")):
             bad = json.loads(json.dumps(EXPERIMENT))
             bad["measures"][0]["variants"][2].update(change)
             self.write("images.json", json.dumps(bad))
             self.assert_refused(self.run_program("run", "images.json"), f"/measures/0/variants/2/{place}: ")
+
+
+class Waterfall(ProgramTest):
+    STAGES = ("frame", "arithmetic", "early_termination", "shading", "quadrature", "classification", "reconstruction")
+
+    def setUp(self):
+        super().setUp()
+        view = {**EXPERIMENT["measures"][0]["views"][0], "shading": {"method": "mean_gradient", "light": [0.3, -1, 0.5], **self.LIGHT}}
+        measure = {"kind": "error_waterfall", "size": [20, 12], "renderer": {"step": 1, "early_termination": 0.9}, "entries": 32}
+        self.write("w.json", json.dumps({**EXPERIMENT, "name": "w", "measures": [{**measure, "views": [view], "gain": 4}]}))
+        self.rows = [row for row in self.json_of("run", "w.json")["rows"] if row.get("line") is None]
+
+    LIGHT = {"ambient": 0.2, "diffuse": 0.8, "specular": 0.4, "shininess": 10}
+
+    def test_shares_add_up_to_all_of_the_error(self):
+        for part in ("alone", "mended", "in turn"):
+            shares = [row["share"] for row in self.rows if row["part"] == part]
+            self.assertEqual(len(shares), len(self.STAGES) + (part != "in turn"))
+            self.assertAlmostEqual(sum(shares), 100, 9)
+
+    def test_every_stage_shows_and_mending_all_leaves_nothing(self):
+        rows = {(row["part"], row["stage"]): row for row in self.rows}
+        for stage in self.STAGES:
+            self.assertGreater(rows["alone", stage]["rmse"], 1e-9, stage)
+        self.assertEqual(rows["in turn", self.STAGES[-1]]["rmse_left"], 0)
+        # What mending one stage changes is what is left of the error then, apart from the sign.
+        self.assertAlmostEqual(rows["in turn", "frame"]["rmse"], rows["mended", "frame"]["rmse"], 12)
+        # The frame alone: half a step of 255 where sRGB is steepest in light, 2.4 / 1.055.
+        self.assertLess(rows["alone", "frame"]["maximum"], 2.4 / 1.055 / 510 + 1e-9)
+        self.assertLess(rows["alone", "arithmetic"]["maximum"], 1e-5)  # some 20 slabs of 2^-24 each, with a margin
+
+    def test_without_light_there_is_no_shading_to_mend(self):
+        document = json.loads((self.folder / "w.json").read_text())
+        document["measures"][0]["views"][0].pop("shading")
+        self.write("w.json", json.dumps(document))
+        stages = {row["stage"] for row in self.json_of("run", "w.json")["rows"] if row.get("stage")}
+        self.assertEqual(stages, {*self.STAGES, "interaction", "all"} - {"shading"})
+
+
+class OptimalTable(ProgramTest):
+    SIZES = [4, 8, 16, 32, 64]
+
+    def setUp(self):
+        super().setUp()
+        fields = [{"name": f"signal_{side}", "kind": "marschner_lobb", "samples": side} for side in (7, 9, 11)]
+        fields.append({"name": "absent", "kind": "volume", "volume": "no_such_volume"})
+        gentle = [{**point, "extinction": point["extinction"] / 20} for point in POINTS]
+        transfers = [
+            {"name": name, "kind": "points", "transfer_function": {"points": points}}
+            for name, points in (("points", POINTS), ("gentle", gentle), ("steep", POINTS[:2] + [{**POINTS[2], "s": 0.45}]))
+        ]
+        camera = EXPERIMENT["measures"][0]["views"][0]["camera"]
+        measure = {"kind": "optimal_table", "size": [20, 12], "camera": camera, "sizes": self.SIZES, "reference": 64}
+        measure |= {"threshold": 0.5, "slabs": 200, "slab_table": 32}
+        document = {**EXPERIMENT, "name": "o", "fields": fields, "transfer_functions": transfers, "measures": [measure]}
+        self.write("o.json", json.dumps(document))
+        self.rows = self.json_of("run", "o.json")["rows"]
+
+    def part(self, part, **wanted):
+        return [row for row in self.rows if row.get("part") == part and all(row.get(key) == value for key, value in wanted.items())]
+
+    def test_the_smallest_size_is_that_from_which_errors_stay_below_the_threshold(self):
+        for case in self.part("case"):
+            keys = {"field": case["field"], "transfer": case["transfer"]}
+            errors = {row["table_size"]: row["error"] for row in self.part("size", **keys)}
+            self.assertEqual(list(errors), self.SIZES)
+            enough = [size for size in self.SIZES if all(errors[other] < 0.5 for other in self.SIZES if other >= size)]
+            self.assertEqual(case["smallest"], enough[0] if enough else None)
+        self.assertGreater(len({case["smallest"] for case in self.part("case")}), 1)
+
+    def test_mean_opacity_is_the_integral(self):
+        for case in self.part("case", transfer="points"):
+            s = (numpy.arange(200_000) + 0.5) / 200_000
+            self.assertAlmostEqual(case["mean_opacity"], (1 - numpy.exp(-1.5 * numpy.clip((s - 0.4) / 0.6, 0, 1))).mean(), 9)
+
+    def test_predictions_do_not_know_what_they_predict(self):
+        cases = {(row["field"], row["transfer"]): numpy.log2(row["smallest"]) for row in self.part("case") if row["smallest"]}
+        for held_out in ("volume", "volume and transfer function"):
+            rows = self.part("prediction", model="mean", held_out=held_out)
+            self.assertEqual(len(rows), len(cases))
+            for row in rows:
+                others = [
+                    value
+                    for (field, transfer), value in cases.items()
+                    if field != row["volume"] and (held_out == "volume" or transfer != row["transfer"])
+                ]
+                self.assertAlmostEqual(row["octaves"], sum(others) / len(others) - numpy.log2(row["smallest"]))
+
+    def test_skill_is_against_the_mean(self):
+        for held_out in ("volume", "volume and transfer function"):
+            squares = {
+                model: sum(row["octaves"] ** 2 for row in self.part("prediction", model=model, held_out=held_out))
+                for model in ("mean", "interpolated", "slabs")
+            }
+            for model, sum_of_squares in squares.items():
+                (row,) = self.part("model", model=model, held_out=held_out)
+                self.assertAlmostEqual(row["skill"], 1 - sum_of_squares / squares["mean"])
+
+    def test_an_absent_volume_is_refused_and_the_others_go_on(self):
+        (row,) = [row for row in self.rows if row["field"] == "absent"]
+        self.assertEqual(row["status"], "refused")
+        self.assertTrue(self.part("model"))
+
+
+if __name__ == "__main__":
+    unittest.main()

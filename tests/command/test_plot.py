@@ -10,7 +10,11 @@ ROWS = {"rows": {"measure": "signal_error"}, "series": "scheme"}
 POINTS = {"kind": "points", "value": "xi_p50", "low": "xi_p05", "high": "xi_p95", "group": "field", "label": "points of xi", "log": True, **ROWS}
 LINES = {"kind": "lines", "x": "fetches_mean", "y": "xi_p50", "label_x": "fetches", "label_y": "lines of xi", "log_y": True,
          "x_range": [0, 100], "floor": 1e-9, **ROWS}
-PANELS = changed(EXPERIMENT, "/plot", {"title": "all", "columns": 2, "panels": [*EXPERIMENT["plot"]["panels"], POINTS, LINES]})
+SCATTER = {"kind": "scatter", "x": "fetches_mean", "y": "xi_p50", "label_x": "fetches", "label_y": "marks of xi", "log_x": True,
+           "log_y": True, "diagonal": True, **ROWS}
+PANELS = changed(
+    EXPERIMENT, "/plot", {"title": "all", "columns": 2, "panels": [*EXPERIMENT["plot"]["panels"], POINTS, LINES, SCATTER]}
+)
 
 # What no schema can say: names of columns and their values, and which of two numbers is greater.
 BEYOND_SCHEMA = re.compile(
@@ -33,7 +37,7 @@ class Panels(ProgramTest):
 
     def test_every_kind_is_drawn_with_the_same_bytes_again(self):
         image = self.drawn(PANELS)
-        for text in ("all", "points of xi", "lines of xi", "white", "order0 mid"):
+        for text in ("all", "points of xi", "lines of xi", "marks of xi", "white", "order0 mid"):
             self.assertIn(f">{text}</text>", image)
         self.assertEqual(self.drawn(PANELS), image)
 
