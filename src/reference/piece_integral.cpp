@@ -53,23 +53,31 @@ std::pair<LinearPiece<Degree>, LinearPiece<Degree>> halves(const LinearPiece<Deg
   return result;
 }
 
+template <int Degree, class Whole>
+PieceIntegral<> integrate_by_halves(const LinearPiece<Degree>& piece, bool associated, const Whole& whole, int level);
+
 /// `whole` integrates a piece in one go, or says that it cannot; then its halves.
 template <int Degree, class Whole>
+PieceIntegral<> integrate(const LinearPiece<Degree>& piece, bool associated, const Whole& whole, int level = 0) {
+  PieceIntegral<> result = whole(piece, associated);
+  if (!(result.nodes <= most_nodes)) result = integrate_by_halves(piece, associated, whole, level);
+  return result;
+}
+
+template <int Degree, class Whole>
 PieceIntegral<> integrate_by_halves(const LinearPiece<Degree>& piece, bool associated, const Whole& whole, int level) {
-  const PieceIntegral<> at_once = whole(piece, associated);
-  if (at_once.nodes <= most_nodes) return at_once;
   // Depths fall below any limit in 1200 halvings; what resists for other reasons is given up much earlier.
   constexpr int most_levels = 1200;
   constexpr int most_levels_of_shallow = 20;
   const PieceIntegral<> bound = crude(piece, associated);
   if (level == most_levels || (bound.depth < 1 && level >= most_levels_of_shallow)) return bound;
   const auto [front, back] = halves(piece);
-  PieceIntegral<> result = integrate_by_halves(front, associated, whole, level + 1);
+  PieceIntegral<> result = integrate(front, associated, whole, level + 1);
   const double front_depth = result.depth - result.depth_error;
   // Nor is what lies behind an unknown depth computed: either half might be so deep, at every level.
   const bool is_behind_seen = front_depth <= opaque_depth && result.depth_error <= opaque_depth;
   const PieceIntegral<> behind =
-      is_behind_seen ? integrate_by_halves(back, associated, whole, level + 1) : crude(back, associated);
+      is_behind_seen ? integrate(back, associated, whole, level + 1) : crude(back, associated);
   const double transmittance = exponential(-result.depth);
   const double most_transmittance = slack * exponential(-std::max(front_depth, 0.0));
   result.weight_0 += transmittance * behind.weight_0;
@@ -88,17 +96,20 @@ PieceIntegral<> integrate_by_halves(const LinearPiece<Degree>& piece, bool assoc
 
 template <int Degree>
 PieceIntegral<> integrate(const LinearPiece<Degree>& piece, Emission emission) {
-  return integrate_by_halves(piece, emission == Emission::associated, kernels<Degree>().integrate_one, 0);
+  return integrate(piece, emission == Emission::associated, kernels<Degree>().integrate_one);
 }
 
 template <int Degree>
 PieceIntegral<> integrate_scalar(const LinearPiece<Degree>& piece, Emission emission) {
-  return integrate_by_halves(piece, emission == Emission::associated, kernels<Degree>().integrate_scalar, 0);
+  return integrate(piece, emission == Emission::associated, kernels<Degree>().integrate_scalar);
 }
 
 template <int Degree>
 PieceIntegral<Eight> integrate(const LinearPiece<Degree, Eight>& pieces, Emission emission) {
   PieceIntegral<Eight> result = kernels<Degree>().integrate_eight(pieces, emission == Emission::associated);
+  bool are_all_done = true;  // asked of all at once, which is one branch, not eight
+  for (const double nodes : result.nodes) are_all_done &= nodes <= most_nodes;
+  if (are_all_done) return result;
   for (std::size_t lane = 0; lane < lane_count; ++lane) {
     if (result.nodes[lane] <= most_nodes) continue;
     LinearPiece<Degree> piece{.x_error = pieces.x_error[lane],
