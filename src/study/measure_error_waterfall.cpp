@@ -32,9 +32,8 @@ constexpr std::array<std::string_view, 7> stage_names{"frame",      "arithmetic"
 
 constexpr std::string_view stage_description =
     "what is exchanged. frame: 8-bit sRGB, or light as it is; arithmetic: binary32 or binary64, of the same rays unlit "
-    "and "
-    "read from a table; early_termination: rays end where they are nearly opaque, or not; shading: by the method from "
-    "normals at samples, or with the normal of every point; quadrature: first-order slabs, or the signal itself; "
+    "and read from a table; early_termination: rays end where they are nearly opaque, or not; shading: by the method "
+    "from normals at samples, or with the normal of every point; quadrature: first-order slabs, or the signal itself; "
     "classification: extinction and colour from entries of 8 bits, or from the transfer function; reconstruction: "
     "trilinear, or by the prefiltered cubic B-spline, which is taken for the signal";
 

@@ -261,7 +261,7 @@ double shade_by_tables(const std::array<Table, 4>& tables, const std::vector<std
 
 /// Scalars of consecutive samples are close in coherent rays, anywhere in random ones.
 template <class Method>
-void quadratic_against_linear(benchmark::State& state) {
+void linear_against_arc(benchmark::State& state) {
   const bool is_coherent = state.range(0) != 0;
   static const auto tables = make_tables();
   const auto slabs = make_inputs<Binary32>().slabs;
@@ -283,8 +283,8 @@ void quadratic_against_linear(benchmark::State& state) {
   state.counters["arc_nanoseconds"] = 1e9 * state.counters["peer_seconds"] / count;
   state.counters["slower"] = state.counters["speedup"] - 1;
 }
-BENCHMARK(quadratic_against_linear<QuadraticArc>)->Arg(0)->Arg(1)->UseManualTime();
-BENCHMARK(quadratic_against_linear<MinimaxArc>)->Arg(0)->Arg(1)->UseManualTime();
+BENCHMARK(linear_against_arc<QuadraticArc>)->Arg(0)->Arg(1)->UseManualTime();
+BENCHMARK(linear_against_arc<MinimaxArc>)->Arg(0)->Arg(1)->UseManualTime();
 
 // --- The integrals themselves, where no table is at hand ---
 
