@@ -33,9 +33,7 @@ inline FloatLanes::Bits lane_places() {
 }
 
 /// Neighbouring numbers, the first one at place 0.
-inline FloatLanes load_in_places(const float* from) {
-  return FloatLanes::of(__builtin_shuffle(FloatLanes::load(from).vector, lane_places()));
-}
+inline FloatLanes load_in_places(const float* from) { return shuffled(FloatLanes::load(from), lane_places()); }
 
 /// Writes the slabs as texels one behind the other, RGBA each, in the order of the lanes' places. A quarter is 128
 /// bits, which hold a texel; the shuffles are those that processors have.

@@ -70,6 +70,17 @@ inline FloatLanes select(const FloatLanes::Bits& which, const FloatLanes& a, con
 inline FloatLanes larger(const FloatLanes& a, const FloatLanes& b) { return select(a.vector > b.vector, a, b); }
 inline FloatLanes smaller(const FloatLanes& a, const FloatLanes& b) { return select(a.vector < b.vector, a, b); }
 
+/// Lane l of the result is lane places[l] of `from`.
+inline FloatLanes shuffled(const FloatLanes& from, const FloatLanes::Bits& places) {
+#ifdef __clang__  // which shuffles by constant places only
+  FloatLanes result;
+  for (std::size_t lane = 0; lane < float_lane_count; ++lane) result.vector[lane] = from.vector[places[lane]];
+  return result;
+#else
+  return FloatLanes::of(__builtin_shuffle(from.vector, places));
+#endif
+}
+
 /// The smallest of all lanes.
 inline float least(const FloatLanes& x) {
   float result = x.vector[0];
@@ -85,8 +96,9 @@ inline std::uint32_t lane_mask(const FloatLanes::Bits& which) {
 #elif defined(__FMA__)
   return static_cast<std::uint32_t>(_mm256_movemask_ps(__m256(which)));
 #else
+  const auto lanes = std::bit_cast<std::array<std::int32_t, float_lane_count> >(which);
   std::uint32_t mask = 0;
-  for (std::size_t lane = 0; lane < float_lane_count; ++lane) mask |= (which[lane] != 0 ? 1U : 0U) << lane;
+  for (std::size_t lane = 0; lane < float_lane_count; ++lane) mask |= (lanes[lane] != 0 ? 1U : 0U) << lane;
   return mask;
 #endif
 }

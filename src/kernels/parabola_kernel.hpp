@@ -245,8 +245,6 @@ class ParabolaLanes {
     store_texels(down, falling);
   }
 
-  TransferEntries transfer_;
-  std::int32_t upper_;
   FloatLanes lower_;
   FloatLanes start_;  ///< the last entry below the turning point; the upper end where the slab is monotone
   FloatLanes eight_bows_;
@@ -255,8 +253,10 @@ class ParabolaLanes {
   FloatLanes::Bits turns_{};
   FloatLanes::Bits is_constant_{};
   FloatLanes::Bits is_too_deep_{};
-  float fast_below_ = 0;  ///< intervals whose upper end is not above it are crossed fast in all lanes
   ParabolaSlabs slabs_;
+  TransferEntries transfer_;
+  std::int32_t upper_;
+  float fast_below_ = 0;  ///< intervals whose upper end is not above it are crossed fast in all lanes
 };
 
 /// SlabKernels::parabolas.

@@ -333,11 +333,12 @@ template <int Degree>
     }
     sums.add(associated, Lanes::load(&table.nodes[i]), Lanes::load(&table.weights[i]), x, extinction, depth_here);
   }
-  constexpr double additions_of_lanes = 3;
+  constexpr std::size_t additions_of_lanes = 3;
+  const std::size_t additions = nodes / lane_count + additions_of_lanes;
   auto result = finish<Degree, double>(
       piece, prepared, associated,
       {sum(sums.weight_0), sum(sums.weight_1), sum(sums.transmitted), sum(sums.depth), sum(sums.position)},
-      static_cast<double>(nodes / lane_count) + additions_of_lanes, goal_here);
+      static_cast<double>(additions), goal_here);
   result.nodes = static_cast<double>(nodes);
   return result;
 }

@@ -42,10 +42,8 @@ void second_order_lanes(const TransferEntries& transfer, const SecondOrderSteps&
     const FloatLanes weight = at - FloatLanes::of(__builtin_convertvector(entry, FloatLanes::Vector));
     const FloatLanes::Bits inside = entry - first;
     const auto read = [&](const float* values, const float* differences) {
-      const auto v = FloatLanes::load(values + first).vector;
-      const auto d = FloatLanes::load(differences + first).vector;
-      return multiply_add(weight, FloatLanes::of(__builtin_shuffle(d, inside)),
-                          FloatLanes::of(__builtin_shuffle(v, inside)));
+      return multiply_add(weight, shuffled(FloatLanes::load(differences + first), inside),
+                          shuffled(FloatLanes::load(values + first), inside));
     };
     const FloatLanes t = read(transfer.rate, transfer.rate_difference);
     const FloatLanes absorbed = transmittance * opacity_of<IsThin>(t);

@@ -35,8 +35,8 @@ struct SecondOrderSteps {
   bool is_thin = false;  ///< no rate exceeds 1/2
 };
 
-/// Neighbouring slabs of second order whose scalars are parabolas open downwards, 2 middle >= lower + upper, one in each
-/// lane: by entries of the transfer function.
+/// Neighbouring slabs of second order whose scalars are parabolas open downwards, 2 middle >= lower + upper, one in
+/// each lane: by entries of the transfer function.
 struct ParabolaRow {
   std::ptrdiff_t lower = 0;      ///< end of lane 0
   std::ptrdiff_t direction = 1;  ///< of the next lane's, 1 or -1
@@ -52,8 +52,8 @@ struct SlabKernels {
   void (*march_four)(const SlabTable&, const float* scalars, std::size_t slabs, float* rays);
 
   /// The slabs of second order of all front entries at one middle and one back entry, homogeneous steps front to back,
-  /// into a row of RGBA; scalars beyond the entries are clamped to them. Rates are tau log2(e) times a step, so that 1 -
-  /// 2^-rate is the step's opacity.
+  /// into a row of RGBA; scalars beyond the entries are clamped to them. Rates are tau log2(e) times a step, so that 1
+  /// - 2^-rate is the step's opacity.
   void (*second_order_row)(const TransferEntries&, const SecondOrderSteps&, std::size_t middle, std::size_t back,
                            float* row);
 
