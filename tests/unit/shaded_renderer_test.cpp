@@ -212,27 +212,28 @@ TEST(ShadedRenderer, GoochIsLinearInTheCosine) {
 }
 
 TEST(ShadedRenderer, WhatItRefuses) {
-  const SceneShading pointwise{.lighting = lighting_with("lobe", Negative::clamp)};
-  SceneShading curve = pointwise;
-  curve.method = catalogue::find_shading("quadratic_arc");
-  for (const auto& [scheme, shading] : {std::pair{"reference", curve},
-                                        {"trapezoid", curve},
-                                        {"no_scheme", pointwise},
-                                        {"order1_no_attenuation", pointwise},
-                                        {"cell_adaptive", pointwise},
-                                        {"virtual_catmull_rom", pointwise}})
-    EXPECT_THROW(Renderer{scene_of(scheme, shading)}, InputError) << scheme;
-  Scene scene = scene_of("order1", pointwise);
+  const auto lit_by = [](const char* method) {  // null: pointwise
+    SceneShading shading{.lighting = lighting_with("lobe", Negative::clamp)};
+    if (method != nullptr) shading.method = catalogue::find_shading(method);
+    return shading;
+  };
+  for (const auto& [scheme, method] : {std::pair{"reference", "quadratic_arc"},
+                                       {"trapezoid", "quadratic_arc"},
+                                       {"no_scheme", nullptr},
+                                       {"order1_no_attenuation", nullptr},
+                                       {"cell_adaptive", nullptr},
+                                       {"virtual_catmull_rom", nullptr}})
+    EXPECT_THROW(Renderer{scene_of(scheme, lit_by(method))}, InputError) << scheme;
+  Scene scene = scene_of("order1", lit_by(nullptr));
   scene.table = SceneTable{.size = 16};
   EXPECT_THROW(Renderer{scene}, InputError);
-  scene.shading = curve;
+  scene.shading = lit_by("quadratic_arc");
   EXPECT_NO_THROW(Renderer{scene});
   scene.table->builder = "brute_force";
   EXPECT_THROW(Renderer{scene}, InputError);
   scene.table = SceneTable{.size = ShadedTable::largest_size + 1};
   EXPECT_THROW(Renderer{scene}, InputError);
-  curve.method = catalogue::find_shading("quadratic_arc_fades");
-  EXPECT_THROW(Renderer{scene_of("order1", curve)}, InputError);  // made for cones
+  EXPECT_THROW(Renderer{scene_of("order1", lit_by("quadratic_arc_fades"))}, InputError);  // made for cones
 }
 
 }  // namespace
