@@ -232,13 +232,17 @@ Eigen::Array4d CellRay::operator()(const PixelRay& pixel, const std::optional<st
   if (!(inside.begin < inside.end)) return sum;
   const auto entry = static_cast<double>(inside.begin);
   const RayPart everything{0, static_cast<double>(inside.end - inside.begin)};
-  for (const RayPart& part : parts.value_or(std::span(&everything, 1)))
-    for (double begin = part.begin; begin < part.end; begin += voxels_at_once) {
-      collect(pixel, entry + begin, entry + std::min(begin + voxels_at_once, part.end));
+  for (const RayPart& part : parts.value_or(std::span(&everything, 1))) {
+    double begin = part.begin;
+    while (begin < part.end) {
+      const double end = std::min(begin + voxels_at_once, part.end);
+      collect(pixel, entry + begin, entry + end);
+      begin = end;
       if (cells_.size() < cells_at_once) continue;
       composite(sum);
       if (sum[3] >= march_.opaque()) return sum;
     }
+  }
   composite(sum);
   return sum;
 }

@@ -412,7 +412,7 @@ struct Renderer::Parts {
     if (scene.scheme == "reference") {
       blocks.emplace(certain_blocks(scene, field.grid));
       if (scene.shading) {
-        ShadedRay<Degree>{scene};  // refuses what it cannot light
+        [[maybe_unused]] const ShadedRay<Degree> refuses_what_it_cannot_light(scene);
         make_renderer = [&field, this] { return shaded_reference(field, scene, *blocks); };
         return;
       }
@@ -429,7 +429,7 @@ struct Renderer::Parts {
     scheme = catalogue::find_integral_scheme(scene.scheme);
     if (scheme == nullptr) throw InputError(fmt::format("scheme {}; one of the listed is allowed", scene.scheme));
     if (scene.shading) {
-      ShadedRay<Degree>{scene};
+      [[maybe_unused]] const ShadedRay<Degree> refuses_what_it_cannot_light(scene);
       refuse_unsuitable<Degree>();
       make_renderer = [&field, this, occupied] { return shaded_renderer(field, scene, occupied); };
       return;
@@ -460,7 +460,7 @@ struct Renderer::Parts {
       return;
     }
     if (scene.shading) {
-      ShadedRay<Degree>{scene};
+      [[maybe_unused]] const ShadedRay<Degree> refuses_what_it_cannot_light(scene);
       shaded_table.emplace(scene, table_axes(scene));
       make_renderer = [&field, this, occupied] { return shaded_table_renderer(field, scene, *shaded_table, occupied); };
       return;

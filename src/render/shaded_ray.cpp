@@ -117,7 +117,7 @@ std::array<double, 3> local(const std::array<double, 3>& position, const std::ar
 
 Vector3<double> LitView::normal_at(double t) const {
   const auto cell = cell_at(t);
-  const Vector3<double> gradient = CellGradient(grid_, cell).at(local(position(t), cell));
+  Vector3<double> gradient = CellGradient(grid_, cell).at(local(position(t), cell));
   const double norm = gradient.matrix().norm();
   if (norm == 0) return gradient;
   return sign_ * gradient / norm;

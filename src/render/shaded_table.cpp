@@ -51,7 +51,7 @@ void ShadedTable::integrate_entries(const Scene& scene) {
       const SlabOptics optics(scene.transfer, axes_.scalar(front), axes_.scalar(back), axes_.length);
       const SlabMoments moments = slab_moments(optics, scene.emission);
       Entry& entry = at(front, back);
-      for (int k = 0; k < powers; ++k) {
+      for (Eigen::Index k = 0; k < powers; ++k) {
         entry.segment<3>(4 * k) = moments.colored[static_cast<std::size_t>(k)];
         entry[4 * k + 3] = moments.white[static_cast<std::size_t>(k)];
       }
@@ -66,7 +66,7 @@ void ShadedTable::make_by_subranges(const Scene& scene) {
   for (std::size_t back = 0; back < axes_.size; ++back)
     for (std::size_t front = 0; front < axes_.size; ++front) {
       Entry& entry = at(front, back);
-      for (int k = 0; k < powers; ++k)
+      for (Eigen::Index k = 0; k < powers; ++k)
         entry.segment<4>(4 * k) = tables.moments[static_cast<std::size_t>(k)].at(front, back);
       entry[tent] = tables.tent.at(front, back)[0];
       entry[opacity] = tables.tent.at(front, back)[3];
@@ -96,7 +96,7 @@ Eigen::Array4d ShadedTable::operator()(double front, double back, double share, 
   const Eigen::Matrix<double, 4, 4> cubics = cubic_through() * values;
   Vector3<double> matter = Vector3<double>::Zero();
   Vector3<double> white = Vector3<double>::Zero();
-  for (int k = 0; k < powers; ++k) {
+  for (Eigen::Index k = 0; k < powers; ++k) {
     matter += cubics(k, 0) * slab.segment<3>(4 * k);
     white += slab[4 * k + 3] * cubics.row(k).tail<3>().transpose().array();
   }
