@@ -45,8 +45,8 @@ class SlabOptics {
 template <std::size_t Count>
 struct SlabSums {
   std::array<Vector3<double>, Count> colored;
-  std::array<double, Count> white;
-  std::array<double, Count> bare;
+  std::array<double, Count> white{};
+  std::array<double, Count> bare{};
 };
 
 /// The rule of Gauss and Legendre that `slab_integral` applies, on [0, 1].
