@@ -474,13 +474,8 @@ std::vector<Column> images_columns(const Experiment& experiment, const JsonReade
 
 std::vector<Row> images_rows(const Experiment& experiment, const JsonReader& json, const Field& field) {
   const Options options = read_options(experiment, json);
-  std::vector<Row> rows;
-  for (const View& view : options.views) {
-    if (view.field != field.name) continue;
-    std::vector<Row> of_view = json.blame_for([&] { return ViewRows(experiment, options, view, field.grid).rows; });
-    rows.insert(rows.end(), std::make_move_iterator(of_view.begin()), std::make_move_iterator(of_view.end()));
-  }
-  return rows;
+  return rows_of_views(options.views, field, json,
+                       [&](const View& view) { return ViewRows(experiment, options, view, field.grid).rows; });
 }
 
 }  // namespace raytruth

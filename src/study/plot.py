@@ -210,6 +210,22 @@ def draw_points(axes, result, panel):
     return draw_groups(axes, result, panel, columns, draw_bars, key_width=0)
 
 
+def finish_plane(axes, panel):
+    """Scales, ranges, numbers and names of the axes x and y."""
+    if panel.get("log_x"):
+        axes.set_xscale("log")
+    if panel.get("log_y"):
+        axes.set_yscale("log")
+    axes.set_xlim(panel.get("x_range"))
+    axes.set_ylim(panel.get("y_range"))
+    for log, axis in (("log_x", axes.xaxis), ("log_y", axes.yaxis)):
+        if panel.get(log):
+            label_log_axis(axis)
+    axes.grid(color="0.93", linewidth=0.6)
+    axes.set_xlabel(panel["label_x"])
+    axes.set_ylabel(panel["label_y"])
+
+
 def draw_lines(axes, result, panel):
     """A curve per series. What lies at or below the floor, exact zeros on a log axis too, stands on it, hollow; hollow is
     also what its radius hardly tells from nothing. `front`: the column that says which rows a grey line joins."""
@@ -233,18 +249,7 @@ def draw_lines(axes, result, panel):
             if value <= floor or 0 < abs(value) <= MEANINGFUL_RADII * radius_of(result, row, y):
                 draw_marker(axes, point, value, style, filled=False)
         handles.append(Line2D([], [], **line, label=words(name)))
-    if panel.get("log_x"):
-        axes.set_xscale("log")
-    if panel.get("log_y"):
-        axes.set_yscale("log")
-    axes.set_xlim(panel.get("x_range"))
-    axes.set_ylim(panel.get("y_range"))
-    for log, axis in (("log_x", axes.xaxis), ("log_y", axes.yaxis)):
-        if panel.get(log):
-            label_log_axis(axis)
-    axes.grid(color="0.93", linewidth=0.6)
-    axes.set_xlabel(panel["label_x"])
-    axes.set_ylabel(panel["label_y"])
+    finish_plane(axes, panel)
     show_legend(axes, handles)
     return 2.4, None
 
@@ -260,21 +265,10 @@ def draw_scatter(axes, result, panel):
         marks |= {"markeredgecolor": "black", "markeredgewidth": 0.3}
         axes.plot([row[x] for row in own], [row[y] for row in own], alpha=0.75, **marks)
         handles.append(Line2D([], [], **marks, label=words(name)))
-    if panel.get("log_x"):
-        axes.set_xscale("log")
-    if panel.get("log_y"):
-        axes.set_yscale("log")
-    axes.set_xlim(panel.get("x_range"))
-    axes.set_ylim(panel.get("y_range"))
-    for log, axis in (("log_x", axes.xaxis), ("log_y", axes.yaxis)):
-        if panel.get(log):
-            label_log_axis(axis)
+    finish_plane(axes, panel)
     if panel.get("diagonal"):
         ends = [min(axes.get_xlim()[0], axes.get_ylim()[0]), max(axes.get_xlim()[1], axes.get_ylim()[1])]
         axes.plot(ends, ends, color="0.7", linewidth=0.8, zorder=0, scalex=False, scaley=False)
-    axes.grid(color="0.93", linewidth=0.6)
-    axes.set_xlabel(panel["label_x"])
-    axes.set_ylabel(panel["label_y"])
     show_legend(axes, handles)
     return 2.4, None
 
