@@ -1,47 +1,44 @@
 #pragma once
 
 #include "kernels/cell_kernels.hpp"
-#include "kernels/exponential.hpp"
-#include "kernels/gauss_legendre.hpp"
-#include "kernels/lanes.hpp"
+#include "kernels/piece_kernel.hpp"
 
-#include <array>
 #include <cstddef>
 
 namespace raytruth::inline RAYTRUTH_LEVEL {
 
-/// See CellKernels.
+template <class Sums, int Degree>
+Sums sums_over_nodes(const Integrand<Degree, Lanes>& integrand, std::size_t nodes) {
+  const auto& table = node_table<Degree>(nodes);
+  Sums sums;
+  for (std::size_t i = 0; i < nodes; ++i) sums.add(table, integrand, [i](const NodeRow& row) { return Lanes(row[i]); });
+  return sums;
+}
+
+/// See CellKernels: the sums of a certified piece, without what bounds their errors.
 inline CellLight integrate_cells(const LinearPiece<3, Eight>& cells, bool associated, std::size_t nodes) {
   constexpr std::size_t degree = 3;
   const Lanes length(cells.length);
-  const Lanes quarter = length * (1.0 / (degree + 1));
   const Lanes at_0(cells.extinction_at_0);
   const Lanes slope = Lanes(cells.extinction_at_1) - at_0;
-  std::array<Lanes, degree + 1> x;
-  std::array<Lanes, degree + 1> depth;  // but for the first coefficient, 0
-  Lanes whole{};
+  const Lanes share = length * (-log2_e / (degree + 1));
+  Integrand<degree, Lanes> integrand;
+  Lanes exponent{};
   for (std::size_t j = 0; j <= degree; ++j) {
-    x[j] = Lanes(cells.x[j]);
-    whole = multiply_add(quarter, multiply_add(slope, x[j], at_0), whole);
-    depth[j] = whole;
+    const Lanes x(cells.x[j]);
+    exponent = multiply_add(share, multiply_add(slope, x, at_0), exponent);
+    integrand.x[j] = x;
+    integrand.exponent[j] = exponent;
+    if (j > 0) integrand.rate[j - 1] = static_cast<double>(degree) * (x - integrand.x[j - 1]);
   }
-  const auto& table = node_table<degree>(nodes);
-  Lanes weight_0{};
-  Lanes weight_1{};
-  for (std::size_t i = 0; i < nodes; ++i) {
-    Lanes x_here{};
-    Lanes depth_here{};
-    for (std::size_t j = 0; j <= degree; ++j) {
-      x_here = multiply_add(Lanes(table.signal_basis[j][i]), x[j], x_here);
-      depth_here = multiply_add(Lanes(table.depth_basis[j + 1][i]), depth[j], depth_here);
-    }
-    Lanes density = table.weights[i] * exponential(-depth_here);
-    if (associated) density *= multiply_add(slope, x_here, at_0);
-    weight_1 = multiply_add(density, x_here, weight_1);
-    weight_0 += density;
+  const Lanes opacity = 0.0 - PowerOf2(exponent).less_1();
+  if (associated) {
+    const auto sums = sums_over_nodes<AssociatedSums<degree, Lanes>>(integrand, nodes);
+    const Lanes weight_1 = multiply_add(integrand.x[degree], opacity, sums.light);
+    return {Eight(opacity - weight_1), Eight(weight_1), Eight(opacity)};
   }
-  weight_0 -= weight_1;
-  return {Eight(length * weight_0), Eight(length * weight_1), Eight(exponential(-whole))};
+  const auto sums = sums_over_nodes<PlainSums<degree, Lanes>>(integrand, nodes);
+  return {Eight(length * (sums.transmitted - sums.light)), Eight(length * sums.light), Eight(opacity)};
 }
 
 }  // namespace raytruth::inline RAYTRUTH_LEVEL

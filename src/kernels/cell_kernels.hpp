@@ -8,16 +8,16 @@
 
 namespace raytruth {
 
-/// Eight cubic pieces' light, uncertified: the weights of PieceIntegral, and exp(-depth).
+/// Eight cubic pieces' light, uncertified: the weights of PieceIntegral, and 1 - exp(-depth).
 struct CellLight {
   Eight weight_0{};
   Eight weight_1{};
-  Eight transmittance{};
+  Eight opacity{};
 };
 
 /// The inner loop of a renderer that integrates the cubics of cells, in the version for one level of x86-64.
 struct CellKernels {
-  /// By Gauss's rule of `nodes` nodes; `x_error` is not looked at.
+  /// By Gauss's rule of `nodes` nodes, of depths up to 600; `x_error` is not looked at.
   CellLight (*integrate)(const LinearPiece<3, Eight>& cells, bool associated, std::size_t nodes);
 };
 

@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <mutex>
+#include <vector>
 
 namespace raytruth {
 
@@ -33,18 +34,17 @@ Rule gauss_legendre(std::size_t count) {
   return rule;
 }
 
-/// Bernstein polynomials 0 ... degree at every node, rounded to binary64, in padded rows.
+/// Bernstein polynomials 0 ... degree at every node times a factor, rounded to binary64, in rows.
 template <std::size_t Count>
-std::array<std::vector<double>, Count> bernstein_rows(const Rule& rule, std::size_t stride) {
+std::array<NodeRow, Count> bernstein_rows(const Rule& rule, const std::vector<Real50>& factors) {
   constexpr int degree = static_cast<int>(Count) - 1;
-  std::array<std::vector<double>, Count> rows;
+  std::array<NodeRow, Count> rows{};
   Real50 binomial = 1;
   for (int j = 0; j <= degree; ++j) {
-    auto& row = rows[static_cast<std::size_t>(j)];
-    row.assign(stride, 0);
+    NodeRow& row = rows[static_cast<std::size_t>(j)];
     for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
       const Real50& u = rule.nodes[i];
-      row[i] = to_double(binomial * pow(u, j) * pow(Real50(1 - u), degree - j));
+      row[i] = to_double(factors[i] * binomial * pow(u, j) * pow(Real50(1 - u), degree - j));
     }
     binomial = binomial * (degree - j) / (j + 1);
   }
@@ -56,15 +56,14 @@ NodeTable<Degree> make_table(std::size_t count) {
   const Rule rule = gauss_legendre(count);
   NodeTable<Degree> table;
   table.count = count;
-  table.stride = (count + lane_count - 1) / lane_count * lane_count;
-  table.nodes.assign(table.stride, 0);
-  table.weights.assign(table.stride, 0);
   for (std::size_t i = 0; i < count; ++i) {
     table.nodes[i] = to_double(rule.nodes[i]);
     table.weights[i] = to_double(rule.weights[i]);
   }
-  table.signal_basis = bernstein_rows<Degree + 1>(rule, table.stride);
-  table.depth_basis = bernstein_rows<Degree + 2>(rule, table.stride);
+  const std::vector<Real50> ones(count, 1);
+  table.weighted_rate_basis = bernstein_rows<Degree>(rule, rule.weights);
+  table.signal_basis = bernstein_rows<Degree + 1>(rule, ones);
+  table.depth_basis = bernstein_rows<Degree + 2>(rule, ones);
   return table;
 }
 

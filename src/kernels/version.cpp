@@ -25,21 +25,29 @@ LinearPiece<Degree, Lanes> in_lanes(const LinearPiece<Degree, Eight>& pieces) {
 }
 
 template <int Degree>
-PieceIntegral<Eight> integrate_eight(const LinearPiece<Degree, Eight>& pieces, bool associated) {
-  const PieceIntegral<Lanes> result = integrate_node_by_node(in_lanes(pieces), associated);
+[[gnu::flatten]] PieceIntegral<Eight> integrate_eight(const LinearPiece<Degree, Eight>& pieces, bool associated) {
+  const PieceIntegral<Lanes> result = associated ? integrate_node_by_node<AssociatedSums>(in_lanes(pieces))
+                                                 : integrate_node_by_node<PlainSums>(in_lanes(pieces));
   return {Eight(result.weight_0), Eight(result.weight_1),    Eight(result.weight_error),
           Eight(result.depth),    Eight(result.depth_error), Eight(result.nodes)};
+}
+
+template <int Degree>
+PieceIntegral<> integrate_one(const LinearPiece<Degree>& piece, bool associated) {
+  return associated ? integrate_nodes_side_by_side<AssociatedSums>(piece)
+                    : integrate_nodes_side_by_side<PlainSums>(piece);
+}
+
+template <int Degree>
+PieceIntegral<> integrate_scalar(const LinearPiece<Degree>& piece, bool associated) {
+  return associated ? integrate_node_by_node<AssociatedSums>(piece) : integrate_node_by_node<PlainSums>(piece);
 }
 
 Eight transmittances(const Eight& depths) { return Eight(exponential(-Lanes(depths))); }
 
 template <int Degree>
-constexpr Kernels<Degree> all_of{integrate_nodes_side_by_side<Degree>,
-                                 integrate_node_by_node<Degree, double>,
-                                 integrate_eight<Degree>,
-                                 crossings<Degree>,
-                                 normalise<Degree>,
-                                 transmittances};
+constexpr Kernels<Degree> all_of{integrate_one<Degree>, integrate_scalar<Degree>, integrate_eight<Degree>,
+                                 crossings<Degree>,     normalise<Degree>,        transmittances};
 
 }  // namespace
 

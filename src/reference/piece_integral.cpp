@@ -14,7 +14,6 @@ namespace raytruth {
 
 namespace {
 
-constexpr double opaque_depth = 92;    // exp(-92) < 2^-132: what lies behind is bounded, not computed
 constexpr double slack = 1 + 0x1p-20;  // second-order terms, and the rounding of the error bounds themselves
 
 /// Nothing but its size: x and 1 - x times the integral of tau T, which is at most 1, or of T, at most the length.

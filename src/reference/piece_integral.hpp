@@ -5,6 +5,9 @@
 
 namespace raytruth {
 
+/// exp(-92) < 2^-132: what lies behind so much is bounded, not computed.
+inline constexpr double opaque_depth = 92;
+
 /// One piece of any depth, certified; its quadrature's nodes side by side.
 template <int Degree>
 PieceIntegral<> integrate(const LinearPiece<Degree>& piece, Emission emission);

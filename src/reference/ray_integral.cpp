@@ -14,7 +14,6 @@ namespace raytruth {
 namespace {
 
 constexpr double slack = 1 + 0x1p-20;   // second-order terms, and the rounding of the error bounds themselves
-constexpr double opaque_depth = 92;     // exp(-92) < 2^-132: what lies behind is bounded, not computed
 constexpr double negligible = 0x1p-48;  // share of an interval's extinction or colour: some roundings of x
 constexpr double brief = 0x1p-20;       // share of a stretch outside its interval that halving cannot much improve
 constexpr double shortest = 0x1p-45;    // in a piece's unit coordinate

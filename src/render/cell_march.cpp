@@ -213,7 +213,7 @@ void CellRay::integrate_batch() {
   for (std::size_t lane = 0; lane < batch_.count; ++lane) {
     const LinearInterval& linear = march_.intervals()[batch_.interval[lane]];
     lights_[batch_.index[lane]] << light.weight_0[lane] * linear.at_0.color + light.weight_1[lane] * linear.at_1.color,
-        1 - light.transmittance[lane];
+        light.opacity[lane];
   }
   batch_.count = 0;
   batch_.most_depth = 0;

@@ -9,7 +9,10 @@
 #include <gtest/gtest.h>
 #include <boost/math/quadrature/gauss.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 namespace raytruth {
@@ -33,17 +36,43 @@ TEST(Exponential, StaysWithinItsBoundEverywhere) {
   EXPECT_EQ(exponential(-1e300), exponential(-700.0));
 }
 
-TEST(Exponential, ItsPolynomialLeavesOutATenthOfAUnit) {
+TEST(Exponential, ItsPolynomialLeavesOutATenthOfAUnitAndHalfAOneLessOne) {
   Real50 worst = 0;
+  Real50 worst_less_1 = 0;
   constexpr int steps = 2000;  // the error turns twelve times
   for (int i = -steps; i <= steps; ++i) {
     if (i == 0) continue;
     const Real50 r = Real50(0.3466) * i / steps;
     Real50 g = 0;
     for (std::size_t k = exponential_coefficients.size(); k-- > 0;) g = g * r + exponential_coefficients[k];
-    worst = std::max<Real50>(worst, abs((1 + r + r * r * g) * exp(Real50(-r)) - 1));
+    const Real50 missed = abs(Real50(r + r * r * g - boost::multiprecision::expm1(r)));
+    worst = std::max<Real50>(worst, missed * exp(Real50(-r)));
+    worst_less_1 = std::max<Real50>(worst_less_1, missed / abs(boost::multiprecision::expm1(r)));
   }
+  EXPECT_LE(worst_less_1, 0.5 * unit_roundoff);
   EXPECT_LE(worst, 0.1 * unit_roundoff);
+}
+
+TEST(Exponential, PowersOfTwoAndWhatTheyAreLessOneStayWithinTheirBounds) {
+  double worst = 0;
+  double worst_less_1 = 0;
+  const auto relative_error = [](double value, const Real50& exact) {
+    return std::abs(to_double(Real50((Real50(value) - exact) / exact)));
+  };
+  for (std::uint64_t i = 0; i < 40000; ++i) {
+    const double largest = std::array{1.0, 60.0, 900.0, 1e-9}[i % 4];
+    const double y = (2 * uniform(4, i) - 1) * largest;
+    const PowerOf2 power(y);
+    const Real50 exponent = Real50(y) * log(Real50(2));
+    worst = std::max(worst, relative_error(power.value(), exp(exponent)));
+    worst_less_1 = std::max(worst_less_1, relative_error(power.less_1(), boost::multiprecision::expm1(exponent)));
+  }
+  EXPECT_LE(worst, PowerOf2<double>::error);
+  EXPECT_LE(worst_less_1, PowerOf2<double>::error_less_1);
+  EXPECT_GT(worst, PowerOf2<double>::error / 4);
+  EXPECT_GT(worst_less_1, PowerOf2<double>::error_less_1 / 4);
+  EXPECT_EQ(PowerOf2(0.0).value(), 1);
+  EXPECT_EQ(PowerOf2(0.0).less_1(), 0);
 }
 
 TEST(Exponential, ThePowerAboveIsAboveAndNear) {
@@ -68,8 +97,12 @@ TEST(NodeTable, IntegratesPolynomialsOfTwiceItsCount) {
     const auto& table = node_table<3>(count);
     for (std::size_t j = 0; j <= 3; ++j) {
       double sum = 0;
-      for (std::size_t i = 0; i < table.stride; ++i) sum += table.weights[i] * table.signal_basis[j][i];
+      for (std::size_t i = 0; i < most_nodes; ++i) sum += table.weights[i] * table.signal_basis[j][i];
       EXPECT_NEAR(sum, count >= 2 ? 1.0 / 4 : sum, 1e-15);
+    }
+    for (const NodeRow& row : table.weighted_rate_basis) {
+      const double sum = std::accumulate(row.begin(), row.end(), 0.0);
+      EXPECT_NEAR(sum, count >= 2 ? 1.0 / 3 : sum, 1e-15);
     }
     for (std::size_t i = 0; i < count; ++i) {
       double sum = 0;
