@@ -234,7 +234,8 @@ class Passes : public GlDevice {
   void set(GLint where, const std::array<float, 4>& value) const { gl_.uniform_4fv(where, 1, value.data()); }
 
   void upload(const Object& object, const GlTexture& texture) const {
-    constexpr std::array targets{GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_3D};
+    constexpr std::array<GLenum, 3> targets{GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_3D};
+    constexpr std::array<GLenum, 3> wraps{GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R};
     const auto [internal, channels] = stored(texture.format);
     std::size_t count = channels == GL_RED ? 1 : 4;
     std::array<GLsizei, 3> size{};
@@ -245,7 +246,7 @@ class Passes : public GlDevice {
     if (texture.size.empty() || count != texture.texels.size())
       throw std::logic_error(fmt::format("a texture of {} numbers has {}", count, texture.texels.size()));
 
-    const auto target = static_cast<GLenum>(targets.at(texture.size.size() - 1));
+    const GLenum target = targets.at(texture.size.size() - 1);
     const auto [width, height, depth] = size;
     const float* const texels = texture.texels.data();
     gl_.bind_texture(target, object.name());
@@ -256,8 +257,7 @@ class Passes : public GlDevice {
     const GLint filter = texture.is_linear ? GL_LINEAR : GL_NEAREST;
     gl_.tex_parameter(target, GL_TEXTURE_MIN_FILTER, filter);
     gl_.tex_parameter(target, GL_TEXTURE_MAG_FILTER, filter);
-    for (const GLenum wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
-      gl_.tex_parameter(target, wrap, GL_CLAMP_TO_EDGE);
+    for (const GLenum wrap : wraps) gl_.tex_parameter(target, wrap, GL_CLAMP_TO_EDGE);
   }
 
   void check(const char* what) const {

@@ -63,8 +63,8 @@ std::optional<RankCorrelation> kendall(const std::vector<double>& x, const std::
   std::int64_t untied_in_y = 0;
   for (std::size_t i = 0; i < x.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      const int a = sign(x[i] - x[j]);
-      const int b = sign(y[i] - y[j]);
+      const std::int64_t a = sign(x[i] - x[j]);
+      const std::int64_t b = sign(y[i] - y[j]);
       balance += a * b;
       untied_in_x += a * a;
       untied_in_y += b * b;

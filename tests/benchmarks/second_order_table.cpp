@@ -34,6 +34,17 @@ PiecewiseLinear transfer_of(const TableAxes& axes) {
   return PiecewiseLinear(std::move(points));
 }
 
+/// What a benchmark's state asks for: a size, and N.
+struct Asked {
+  explicit Asked(const benchmark::State& state)
+      : axes(axes_of(static_cast<std::size_t>(state.range(0)))), transfer(transfer_of(axes)) {}
+
+  TableAxes axes;
+  PiecewiseLinear transfer;
+};
+
+int iterations_of(const benchmark::State& state) { return static_cast<int>(state.range(1)); }
+
 /// Calls entry(front, middle, back, texel) for all.
 template <class Entry>
 double for_each_entry(Table3<float>& table, const Entry& entry) {
@@ -110,35 +121,45 @@ double same_numbers(const PiecewiseLinear& transfer, Table3<float>& table, int i
   });
 }
 
-double largest_difference(const Table3<float>& a, const Table3<float>& b) {
+struct Difference {
   double largest = 0;
-  for (std::size_t i = 0; i < a.values.size(); ++i)
-    largest = std::max(largest, std::abs(static_cast<double>(a.values[i]) - static_cast<double>(b.values[i])));
-  return largest;
+  double mean = 0;
+};
+
+Difference difference_of(const Table3<float>& a, const Table3<float>& b) {
+  Difference result;
+  for (std::size_t i = 0; i < a.values.size(); ++i) {
+    const double difference = std::abs(static_cast<double>(a.values[i]) - static_cast<double>(b.values[i]));
+    result.largest = std::max(result.largest, difference);
+    result.mean += difference / static_cast<double>(a.values.size());
+  }
+  return result;
 }
 
 tbb::global_control threads(std::size_t count) { return {tbb::global_control::max_allowed_parallelism, count}; }
 
 template <class Peer>
-void run(benchmark::State& state, const Peer& peer, double tolerance) {
-  const TableAxes axes = axes_of(static_cast<std::size_t>(state.range(0)));
-  const auto iterations = static_cast<int>(state.range(1));
+void run(benchmark::State& state, const Peer& peer, const Difference& most) {
+  const Asked asked(state);
+  const int iterations = iterations_of(state);
   const auto one_thread = threads(1);
-  const PiecewiseLinear transfer = transfer_of(axes);
-  Table3<float> of_peer(axes);
-  Table3<float> of_subject(axes);
+  Table3<float> of_peer(asked.axes);
+  Table3<float> of_subject(asked.axes);
   const auto fast = [&] {
-    fill_second_order_table(of_subject, transfer, {.count = iterations}, *slab_kernel_versions().front());
+    fill_second_order_table(of_subject, asked.transfer, {.count = iterations}, *slab_kernel_versions().front());
     return static_cast<double>(of_subject.values.back());
   };
-  run_paired(state, fast, [&] { return peer(transfer, of_peer, iterations); });
-  const double difference = largest_difference(of_subject, of_peer);
-  if (!(difference <= tolerance)) return state.SkipWithError("the two do not agree");
-  state.counters["largest_difference"] = difference;
+  run_paired(state, fast, [&] { return peer(asked.transfer, of_peer, iterations); });
+  const Difference difference = difference_of(of_subject, of_peer);
+  if (!(difference.largest <= most.largest && difference.mean <= most.mean))
+    return state.SkipWithError("the two do not agree");
+  state.counters["largest_difference"] = difference.largest;
+  state.counters["mean_difference"] = difference.mean;
 }
 
-/// Nearest entries against linear ones: they agree to an 8-bit transfer function's jumps only.
-void fast_against_plain_loop(benchmark::State& state) { run(state, plain_loop, 1); }
+/// Nearest entries against linear ones: single entries differ as much as a random transfer function's neighbours do,
+/// their mean hardly.
+void fast_against_plain_loop(benchmark::State& state) { run(state, plain_loop, {.largest = 0.5, .mean = 0.05}); }
 BENCHMARK(fast_against_plain_loop)
     ->ArgNames({"size", "iterations"})
     ->ArgsProduct({{64, 256}, {64}})
@@ -147,7 +168,7 @@ BENCHMARK(fast_against_plain_loop)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
 
-void fast_against_same_numbers(benchmark::State& state) { run(state, same_numbers, 2e-5); }
+void fast_against_same_numbers(benchmark::State& state) { run(state, same_numbers, {.largest = 2e-5, .mean = 1e-6}); }
 BENCHMARK(fast_against_same_numbers)
     ->ArgNames({"size", "iterations"})
     ->Args({64, 64})
@@ -159,10 +180,9 @@ BENCHMARK(fast_against_same_numbers)
 /// at random, against certified ones.
 void exact_against_plain_loop(benchmark::State& state) {
   constexpr std::uint64_t certified_entries = 20000;
-  const TableAxes axes = axes_of(static_cast<std::size_t>(state.range(0)));
-  const auto iterations = static_cast<int>(state.range(1));
+  const auto [axes, transfer] = Asked(state);
+  const int iterations = iterations_of(state);
   const auto one_thread = threads(1);
-  const PiecewiseLinear transfer = transfer_of(axes);
   Table3<float> of_peer(axes);
   Table3<float> of_subject(axes);
   const auto exact = [&] {
@@ -194,17 +214,16 @@ BENCHMARK(exact_against_plain_loop)
 
 /// N iterations, 0: exact.
 void two_threads_against_one(benchmark::State& state) {
-  const TableAxes axes = axes_of(static_cast<std::size_t>(state.range(0)));
-  const auto iterations = static_cast<int>(state.range(1));
-  const PiecewiseLinear transfer = transfer_of(axes);
-  Table3<float> table(axes);
+  const Asked asked(state);
+  const int iterations = iterations_of(state);
+  Table3<float> table(asked.axes);
   const auto on = [&](std::size_t count) {
     const auto limit = threads(count);
     const SlabKernels& kernels = *slab_kernel_versions().front();
     if (iterations > 0)
-      fill_second_order_table(table, transfer, {.count = iterations}, kernels);
+      fill_second_order_table(table, asked.transfer, {.count = iterations}, kernels);
     else
-      fill_exact_second_order_table(table, transfer, kernels);
+      fill_exact_second_order_table(table, asked.transfer, kernels);
     return static_cast<double>(table.values.back());
   };
   run_paired(
@@ -219,9 +238,8 @@ BENCHMARK(two_threads_against_one)
 
 /// Exact slabs against certified ones, entry by entry.
 void exact_against_certified(benchmark::State& state) {
-  const TableAxes axes = axes_of(static_cast<std::size_t>(state.range(0)));
+  const auto [axes, transfer] = Asked(state);
   const auto one_thread = threads(1);
-  const PiecewiseLinear transfer = transfer_of(axes);
   Table3<float> table(axes);
   run_paired(
       state,

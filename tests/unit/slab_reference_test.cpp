@@ -1,10 +1,9 @@
 #include "shading/slab_reference.hpp"
 #include "core/error.hpp"
-#include "core/random.hpp"
+#include "random_slabs.hpp"
 #include "real50_integral.hpp"
 #include "shading/gooch.hpp"
 #include "shading/slab_shading.hpp"
-#include "transfer/study_transfers.hpp"
 
 #include <gtest/gtest.h>
 #include <boost/math/constants/constants.hpp>
@@ -16,9 +15,6 @@
 
 namespace raytruth {
 namespace {
-
-constexpr std::array both_conventions{Emission::associated, Emission::plain};
-constexpr std::array treatments{Negative::clamp, Negative::mirror, Negative::none};
 
 Vector3<double> direction(double degrees, double tilt_degrees = 0) {
   const double angle = degrees * std::numbers::pi / 180;
@@ -149,42 +145,9 @@ std::array<double, 8> numbers_of(const ShadedRadiance& light) {
           light.diffuse[1], light.diffuse[2], light.specular[0], light.opacity};
 }
 
-struct RandomSlab {
-  ShadedSlab slab;
-  Lighting lighting;
-};
-
-Vector3<double> random_direction(std::uint64_t seed, std::uint64_t index) {
-  const auto u = random_numbers(seed, RandomStream::points, index);
-  const double z = 2 * u[0] - 1;
-  const double angle = 2 * std::numbers::pi * u[1];
-  const double r = std::sqrt(1 - z * z);
-  return {r * std::cos(angle), r * std::sin(angle), z};
-}
-
-RandomSlab random_slab(std::uint64_t index) {
-  const auto u = random_numbers(7, RandomStream::points, index);
-  RandomSlab result;
-  result.slab = {u[0], u[1], 0.1 + 4 * u[2], random_direction(1, index), random_direction(2, index)};
-  result.lighting = lighting_from(random_direction(3, index), random_direction(4, index));
-  const std::array shininesses{1.0, 2.0, 10.0, 33.5, 80.0};
-  result.lighting.shininess = shininesses[index % shininesses.size()];
-  const auto& highlights = catalogue::highlights();
-  result.lighting.highlight = &highlights[index % highlights.size()];
-  result.lighting.negative = treatments[index / highlights.size() % treatments.size()];
-  if (result.lighting.negative == Negative::none) result.lighting.shininess = std::ceil(result.lighting.shininess);
-  return result;
-}
-
-const PiecewiseLinear& transfer_of(std::uint64_t index) {
-  static const std::array transfers{ramp_transfer(3), tent_transfer(8), step_transfer(2), isoslab_transfer(400),
-                                    random_transfer(5, 3)};
-  return transfers[index % transfers.size()];
-}
-
 TEST(SlabReference, AgreesWith50Digits) {
   for (std::uint64_t index = 0; index < 60; ++index) {
-    const auto [slab, lighting] = random_slab(index);
+    const auto [slab, lighting] = random_slab(7, index);
     const PiecewiseLinear& transfer = transfer_of(index % 4);
     for (const Emission emission : both_conventions) {
       const auto truth = Slab50{slab, transfer, lighting}.integrals(emission);
@@ -243,7 +206,7 @@ TEST(SlabReference, BackToFrontIsTheSameWithoutAbsorption) {
   const PiecewiseLinear transfer(
       {{0, {0, {0, 1, 0}}}, {0.5, {0, {1, 0, 1}}}, {0.5, {0, {0, 0, 0.5}}}, {1, {0, {1, 1, 1}}}});
   for (std::uint64_t index = 0; index < 20; ++index) {
-    const auto [slab, lighting] = random_slab(index);
+    const auto [slab, lighting] = random_slab(7, index);
     const ShadedSlab reversed{slab.back, slab.front, slab.length, slab.back_normal, slab.front_normal};
     const auto a = slab_reference(slab, transfer, Emission::plain, lighting);
     const auto b = slab_reference(reversed, transfer, Emission::plain, lighting);
