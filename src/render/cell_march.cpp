@@ -23,15 +23,6 @@ namespace {
 constexpr std::size_t cells_at_once = 64;
 constexpr double voxels_at_once = 64;
 
-// Gauss's rule of n nodes is exact to degree 2n - 1. With T = 1 - Q + Q^2/2 the light x tau T of a cell has degree 6,
-// 10, 14, ...: 6 nodes err from Q^2/2 on, by less than 2^-22 of the light for any cubic in [0, 1] and depths up to 1/8,
-// 10 nodes from Q^4/24 on; far less where the cubic is smooth.
-struct Rule {
-  double deepest;
-  std::size_t nodes;
-};
-constexpr Rule thin{0.125, 6};
-constexpr Rule thick{1, 10};
 constexpr double deepest = 16;  // halved until they are thick; deeper ones are the reference's
 
 constexpr double faintest = 0x1p-30;  // transmittance behind which nothing counts
@@ -186,7 +177,7 @@ void CellRay::add_part(const Bernstein<3>& cubic, double length, std::size_t int
     lights_.emplace_back() << light.color, light.opacity;
     return;
   }
-  if (most_depth > thick.deepest) {
+  if (most_depth > thick_cell.deepest) {
     const auto [front, back] = cubic.split(0.5);
     add_part(front, length / 2, interval);
     add_part(back, length / 2, interval);
@@ -208,7 +199,7 @@ void CellRay::add_part(const Bernstein<3>& cubic, double length, std::size_t int
 
 void CellRay::integrate_batch() {
   const CellKernels& kernels = *cell_kernel_versions().front();
-  const std::size_t nodes = batch_.most_depth <= thin.deepest ? thin.nodes : thick.nodes;
+  const std::size_t nodes = batch_.most_depth <= thin_cell.deepest ? thin_cell.nodes : thick_cell.nodes;
   const CellLight light = kernels.integrate(batch_.cells, march_.emission() == Emission::associated, nodes);
   for (std::size_t lane = 0; lane < batch_.count; ++lane) {
     const LinearInterval& linear = march_.intervals()[batch_.interval[lane]];
@@ -222,7 +213,13 @@ void CellRay::integrate_batch() {
 /// Puts what was collected behind `sum`, until the ray is opaque.
 void CellRay::composite(Eigen::Array4d& sum) {
   integrate_cells();
-  for (std::size_t i = 0; i < lights_.size() && sum[3] < march_.opaque(); ++i) sum += (1 - sum[3]) * lights_[i];
+  Eigen::Array4d light = sum;
+  double transmittance = 1 - sum[3];  // by itself, for it is what each part waits for
+  for (std::size_t i = 0; i < lights_.size() && light[3] < march_.opaque(); ++i) {
+    light += transmittance * lights_[i];
+    transmittance *= 1 - lights_[i][3];
+  }
+  sum = light;
   cells_.clear();
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/bernstein.hpp"
 #include "core/real.hpp"
+#include "kernels/cell_kernels.hpp"
 #include "kernels/exponential.hpp"
 #include "kernels/gauss_legendre.hpp"
 #include "reference/piece_integral.hpp"
@@ -298,6 +299,48 @@ void expect_agreeing_levels() {
 TEST(Kernels, EveryLevelOfTheProcessorEncloses) {
   expect_agreeing_levels<3>();
   expect_agreeing_levels<9>();
+}
+
+/// Eight cubics in [0, 1], or at its ends, whose largest extinction times their length is `depth`.
+LinearPiece<3, Eight> random_cells(std::uint64_t index, double depth, bool extreme) {
+  LinearPiece<3, Eight> cells;
+  cells.length.fill(1);
+  for (std::size_t lane = 0; lane < lane_count; ++lane) {
+    const auto number = [&](std::uint64_t stream) {
+      const double u = uniform(stream, lane_count * index + lane);
+      return extreme ? std::round(u) : u;
+    };
+    for (std::size_t j = 0; j <= 3; ++j) cells.x[j][lane] = number(80 + j);
+    cells.extinction_at_0[lane] = number(84);
+    cells.extinction_at_1[lane] = number(85);
+    const double largest = std::max(cells.extinction_at_0[lane], cells.extinction_at_1[lane]);
+    const double scale = largest > 0 ? depth / largest : 0;
+    cells.extinction_at_0[lane] *= scale;
+    cells.extinction_at_1[lane] *= scale;
+  }
+  return cells;
+}
+
+TEST(CellKernels, RulesMissNoMoreThanTheyClaim) {
+  double worst = 0;
+  for (const CellRule& rule : {thin_cell, thick_cell})
+    for (const Emission emission : {Emission::associated, Emission::plain})
+      for (std::uint64_t i = 0; i < 400; ++i) {
+        const auto cells = random_cells(i, rule.deepest * std::pow(0.5, static_cast<double>(i % 3)), i % 2 == 0);
+        const auto certified = integrate(cells, emission);
+        for (const CellKernels* version : cell_kernel_versions()) {
+          const CellLight light = version->integrate(cells, emission == Emission::associated, rule.nodes);
+          for (std::size_t lane = 0; lane < lane_count; ++lane) {
+            const double sum = certified.weight_0[lane] + certified.weight_1[lane];
+            const double missed = std::max(std::abs(light.weight_0[lane] - certified.weight_0[lane]),
+                                           std::abs(light.weight_1[lane] - certified.weight_1[lane]));
+            EXPECT_LE(missed, 0x1p-22 * sum);
+            EXPECT_NEAR(light.opacity[lane], -std::expm1(-certified.depth[lane]), 1e-14);
+            if (sum > 0) worst = std::max(worst, missed / sum);
+          }
+        }
+      }
+  EXPECT_GT(worst, 0x1p-26);  // fewer nodes would not do
 }
 
 /// Coefficients of x on [begin, end] in 50 digits.
