@@ -46,7 +46,8 @@ struct TableMarch::March {
 
   [[nodiscard]] Place place(float scalar) const {
     const float inside = std::min(std::max(scalar, 0.0F), static_cast<float>(entries - 1));
-    if (!is_linear) return {static_cast<int>(inside + 0.5F), 0};
+    // Halves go up, as a nearest filter has it, and nothing is negative.
+    if (!is_linear) return {static_cast<int>(inside + 0.5F), 0};  // NOLINT(bugprone-incorrect-roundings)
     const int entry = std::min(static_cast<int>(inside), entries - 2);
     return {entry, inside - static_cast<float>(entry)};
   }

@@ -29,7 +29,7 @@ typename Rules<Real>::vec4 march_textures(const TextureUnit<Real>& volume, const
   if (!(stretch.begin < stretch.end)) return sum;
 
   const auto entries = static_cast<double>(transfer.texture().size[0]);
-  const double begin = static_cast<double>(stretch.begin);
+  const auto begin = static_cast<double>(stretch.begin);
   const double length = static_cast<double>(stretch.end - stretch.begin) * pixel.length_unit;
   const auto count = static_cast<std::int64_t>(std::ceil(length / step));
   for (std::int64_t i = 0; i < count; ++i) {

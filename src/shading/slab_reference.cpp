@@ -234,10 +234,10 @@ Ball integral(const Integrand& what, const Ball& scale) {
 
 /// Both shades of a part of the slab: analytic ones, or, where a cut hides, the values that they may have.
 struct PartShades {
-  bool is_analytic;
+  bool is_analytic = false;
   Shade diffuse;
   Shade specular;
-  bool has_highlight;  ///< an analytic part without one sends no specular light
+  bool has_highlight = false;  ///< an analytic part without one sends no specular light
   Ball diffuse_value;
   Ball specular_value;
 };

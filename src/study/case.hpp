@@ -41,8 +41,8 @@ class CaseReader {
   Case read(const JsonReader& json, std::vector<std::string>& warnings);
 
  private:
-  void read_trilinear(const JsonReader& json, Case& ray, std::vector<std::string>& warnings);
-  void read_tricubic(const JsonReader& json, Case& ray, std::vector<std::string>& warnings);
+  void read_trilinear(const JsonReader& json, Case& result, std::vector<std::string>& warnings);
+  void read_tricubic(const JsonReader& json, Case& result, std::vector<std::string>& warnings);
   const Grid& read_volume_of(const JsonReader& signal, std::vector<std::string>& warnings);
 
   std::vector<std::filesystem::path> folders_;

@@ -121,13 +121,13 @@ std::vector<Column> cone_lobe_columns(const Experiment& experiment, const JsonRe
 std::vector<Row> cone_lobe_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
 std::vector<Column> normal_curves_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> normal_curves_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+std::vector<Row> normal_curves_rows(const Experiment& experiment, const JsonReader& json, const Field& field);
 
 std::vector<Column> spheres_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> spheres_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
 std::vector<Column> continuity_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> continuity_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+std::vector<Row> continuity_rows(const Experiment& experiment, const JsonReader& json, const Field& field);
 
 std::vector<Column> gradient_angles_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> gradient_angles_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
@@ -161,17 +161,17 @@ std::vector<Column> shading_integrals_columns(const Experiment& experiment, cons
 std::vector<Row> shading_integrals_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
 std::vector<Column> images_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> images_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+std::vector<Row> images_rows(const Experiment& experiment, const JsonReader& json, const Field& field);
 
 std::vector<Column> costs_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> costs_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
 std::vector<Column> error_waterfall_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> error_waterfall_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
+std::vector<Row> error_waterfall_rows(const Experiment& experiment, const JsonReader& json, const Field& field);
 
 std::vector<Column> optimal_table_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> optimal_table_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-std::vector<Row> optimal_table_conclusions(const Experiment& experiment, const JsonReader& options,
+std::vector<Row> optimal_table_rows(const Experiment& experiment, const JsonReader& json, const Field& field);
+std::vector<Row> optimal_table_conclusions(const Experiment& experiment, const JsonReader& json,
                                            const std::vector<Row>& rows_of_fields);
 
 inline constexpr std::array measures{

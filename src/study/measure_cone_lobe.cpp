@@ -33,8 +33,11 @@ double zero_found(const Highlight& highlight, double shininess) {
   const double exponent = highlight.exponent(shininess);
   double zero = 0;
   double positive = 1;
-  for (double middle = 0.5; zero < middle && middle < positive; middle = zero + (positive - zero) / 2)
+  double middle = 0.5;
+  while (zero < middle && middle < positive) {
     (highlight.value_at_exponent(middle, exponent) > 0 ? positive : zero) = middle;
+    middle = zero + (positive - zero) / 2;
+  }
   return zero;
 }
 

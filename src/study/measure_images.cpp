@@ -115,7 +115,8 @@ Variant read_variant(const JsonReader& json, const View& view) {
     if (scene.contains("shading")) shading.merge_patch(scene["shading"]);
     scene["shading"] = std::move(shading);
   }
-  Variant variant{.name = json.at("name").text(), .drawing = read_drawing(scene, json), .scene = std::move(scene)};
+  auto drawing = read_drawing(scene, json);
+  Variant variant{.name = json.at("name").text(), .drawing = std::move(drawing), .scene = std::move(scene)};
   if (json.find("reconstruction")) variant.reconstruction = variant.drawing.field;
   return variant;
 }

@@ -63,7 +63,7 @@ void add_rows(const Options& options, const std::string& arithmetic, int digits,
   for (const double opacity : options.opacities)
     for (const std::int64_t parts : options.parts) {
       const auto count = static_cast<double>(parts);
-      const Real50 exact = by_closed_form<Real50>(opacity, count);
+      const auto exact = by_closed_form<Real50>(opacity, count);
       const std::array methods{std::pair{"recursion", by_recursion<Real>(opacity, parts)},
                                std::pair{"power", by_power<Real>(opacity, parts)},
                                std::pair{"closed_form", by_closed_form<Real>(opacity, count)}};

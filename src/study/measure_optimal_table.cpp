@@ -118,7 +118,7 @@ double density(const Optics& optics) { return optics.extinction * optics.color.s
 double bend_of(const Grid& grid, const PiecewiseLinear& transfer) {
   std::vector<double> shares(histogram_bins, 0.0);
   const auto bin_of = [](double s) {
-    return static_cast<std::size_t>(std::clamp(s, 0.0, 1.0) * (histogram_bins - 1) + 0.5);
+    return static_cast<std::size_t>(std::lround(std::clamp(s, 0.0, 1.0) * (histogram_bins - 1)));
   };
   for (const double s : grid.values) shares[bin_of(s)] += 1.0 / static_cast<double>(grid.values.size());
   // Neighbouring bins together, as slabs join neighbouring scalars.

@@ -82,10 +82,10 @@ std::vector<Row> table_formats_rows(const Experiment& experiment, const JsonRead
                                    {"bytes", bytes_of(size * size, format)}});
             add_table_error(row, bilinear_error(truth, exact_entry, format, bits), truth.radius);
             row.insert(row.end(), {{"own_max", own.max},
-                                   {"own_l1", own.l1},
+                                   {"own_l1", own.mean},
                                    {"resolution_max", resolution.max},
-                                   {"resolution_l1", resolution.l1},
-                                   {"format_sets_error", own.l1 > resolution.l1}});
+                                   {"resolution_l1", resolution.mean},
+                                   {"format_sets_error", own.mean > resolution.mean}});
           }
       }
   return rows;

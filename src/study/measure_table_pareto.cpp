@@ -78,7 +78,7 @@ void add_candidate(Row& row, const Candidate& candidate) {
                          {"composites", counted(cost.composites)},
                          {"exponentials", counted(cost.exponentials)},
                          {"error_max", candidate.error.max},
-                         {"error_l1", candidate.error.l1},
+                         {"error_l1", candidate.error.mean},
                          {"radius", candidate.radius}});
 }
 

@@ -20,8 +20,8 @@ struct Fitted {
 };
 
 /// What a slope is fitted to.
-constexpr std::array fitted{Fitted{"max", &TableError::max}, Fitted{"l1", &TableError::l1},
-                            Fitted{"l2", &TableError::l2}, Fitted{"band", &TableError::band_max}};
+constexpr std::array fitted{Fitted{"max", &TableError::max}, Fitted{"l1", &TableError::mean},
+                            Fitted{"l2", &TableError::root_mean_square}, Fitted{"band", &TableError::band_max}};
 
 CertifiedCell::vec4 exact_entry(const CertifiedCell& cell, std::size_t front, std::size_t back) {
   return cell.entry(front, back);
@@ -122,7 +122,7 @@ std::vector<Row> table_resolution_rows(const Experiment& experiment, const JsonR
         add_table_error(row, error, radius);
         if (errors.size() < 2) continue;
         const TableError& before = errors[errors.size() - 2].error;
-        row.emplace_back("l1_ratio", error.l1 / before.l1);
+        row.emplace_back("l1_ratio", error.mean / before.mean);
         row.emplace_back("max_ratio", error.max / before.max);
       }
       Row& row = rows.emplace_back(table_keys(shape, depth, study.sizes.back()));

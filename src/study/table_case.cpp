@@ -165,8 +165,8 @@ Json linear_error(const TableCase& asked, const Table<double>& table) {
   return {{"look_up", "bilinear"},
           {"max", error.max},
           {"max_at", place_json({error.front, error.back})},
-          {"l1", error.l1},
-          {"l2", error.l2},
+          {"l1", error.mean},
+          {"l2", error.root_mean_square},
           {"diagonal_band_max", error.band_max},
           {"places", truth.cells.size() * places_per_axis * places_per_axis},
           {"error_bound", truth.radius}};

@@ -93,10 +93,10 @@ std::vector<Column> table_error_columns() {
 
 void add_table_error(Row& row, const TableError& error, double radius) {
   row.insert(row.end(), {{"error_max", error.max},
-                         {"error_l1", error.l1},
-                         {"error_l2", error.l2},
+                         {"error_l1", error.mean},
+                         {"error_l2", error.root_mean_square},
                          {"band_max", error.band_max},
-                         {"band_l1", error.band_l1},
+                         {"band_l1", error.band_mean},
                          {"outside_max", error.outside_max},
                          {"front", error.front},
                          {"back", error.back},

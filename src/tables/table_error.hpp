@@ -58,11 +58,11 @@ std::array<double, 2> place_of(const TableAxes& axes, const CertifiedCell& cell,
 
 /// Errors of look-ups, colours and opacities alike.
 struct TableError {
-  double max = 0;  ///< largest of all places and channels
-  double l1 = 0;   ///< mean magnitude over the table's area and the four channels
-  double l2 = 0;   ///< root mean square likewise
+  double max = 0;               ///< largest of all places and channels
+  double mean = 0;              ///< of magnitudes over the table's area and the four channels
+  double root_mean_square = 0;  ///< likewise
   double band_max = 0;
-  double band_l1 = 0;
+  double band_mean = 0;
   double outside_max = 0;  ///< largest outside the diagonal band
   double front = 0;        ///< scalars where it is largest
   double back = 0;
@@ -94,15 +94,15 @@ TableError table_error(const CertifiedCells& truth, const LookUp& look_up) {
     double& side = cell.is_in_band() ? error.band_max : error.outside_max;
     side = std::max(side, largest);
     constexpr double places = places_per_axis * places_per_axis;
-    error.l1 += cell.weight * sum / places;
-    error.l2 += cell.weight * sum_of_squares / places;
-    error.band_l1 += cell.band_weight * sum / places;
+    error.mean += cell.weight * sum / places;
+    error.root_mean_square += cell.weight * sum_of_squares / places;
+    error.band_mean += cell.band_weight * sum / places;
     area += cell.weight;
     band_area += cell.band_weight;
   }
-  error.l1 /= area;
-  error.l2 = std::sqrt(error.l2 / area);
-  error.band_l1 /= band_area;
+  error.mean /= area;
+  error.root_mean_square = std::sqrt(error.root_mean_square / area);
+  error.band_mean /= band_area;
   return error;
 }
 

@@ -55,7 +55,8 @@ Scene scene_of(const std::string& scheme, bool skips) {
 /// Where the time goes, by a profile of one image.
 std::string bounded_by(const std::string& scheme) {
   if (scheme == "reference") return "two fifths rounding bounds in 106 bits, a quarter the walk in 106 bits";
-  if (scheme == "cell_cubic") return "two fifths the walk and cubics, a fifth intervals, a fifth integrals, a sixth crossings";
+  if (scheme == "cell_cubic")
+    return "two fifths the walk and cubics, a fifth intervals, a fifth integrals, a sixth crossings";
   return "reads of voxels and table";
 }
 

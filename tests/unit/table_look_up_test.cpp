@@ -178,10 +178,10 @@ TEST(TableError, IsWhatIsWrong) {
     return cell.entry(f, b) + Vec4(0.125, 0, 0, 0);
   });
   EXPECT_NEAR(error.max, 0.125, 1e-14);
-  EXPECT_NEAR(error.l1, 0.125 / 4, 1e-14);
-  EXPECT_NEAR(error.l2, 0.125 / 2, 1e-14);
+  EXPECT_NEAR(error.mean, 0.125 / 4, 1e-14);
+  EXPECT_NEAR(error.root_mean_square, 0.125 / 2, 1e-14);
   EXPECT_NEAR(error.band_max, 0.125, 1e-14);
-  EXPECT_NEAR(error.band_l1, 0.125 / 4, 1e-14);
+  EXPECT_NEAR(error.band_mean, 0.125 / 4, 1e-14);
 }
 
 }  // namespace
