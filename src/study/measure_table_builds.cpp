@@ -7,6 +7,8 @@
 #include "tables/subrange.hpp"
 #include "tables/table_difference.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -128,8 +130,8 @@ std::vector<Column> table_builds_columns(const Experiment& /*experiment*/, const
     for (const std::string what : {"color", "opacity", "largest"})
       columns.push_back({.name = what + "_to_" + to,
                          .unit = "",
-                         .description = "largest difference to " + to + " over all entries, " +
-                                        (what == "largest" ? "colour and opacity" : what)});
+                         .description = fmt::format("largest difference to {} over all entries, {}", to,
+                                                    what == "largest" ? "colour and opacity" : what)});
   return columns;
 }
 
