@@ -54,7 +54,7 @@ Vec4 slab_of(const Certified& certified) {
 struct Found {
   std::array<Vec4, 8> entries;
   Vec4 look_up;
-  std::int64_t evaluations;  ///< of the eight
+  std::int64_t evaluations = 0;  ///< of the eight
 };
 
 struct LookedUp {

@@ -179,7 +179,7 @@ double read_share(const JsonReader& json) { return json.number(0, 1); }
 
 /// A colour, three numbers >= 0.
 Vector3<double> read_tone(const JsonReader& json) {
-  const Vector3<double> tone = read_vector(json);
+  Vector3<double> tone = read_vector(json);
   if (!(tone >= 0).all()) json.refuse_value("a list of three numbers >= 0");
   return tone;
 }

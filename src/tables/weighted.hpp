@@ -19,7 +19,7 @@ struct WeightedSlab {
   typename Rules<Real>::vec4 slab;
   Vector3<Real> from_front;  ///< M: light times its distance from the front, in intervals
   Vector3<Real> from_back;
-  Real intervals;
+  Real intervals{};
 };
 
 /// M(ab) = M_a + T_a (M_b + len_a C_b), and likewise from the back: sums of what is never negative.
