@@ -25,7 +25,7 @@ constexpr std::array treatments{std::pair{std::string_view("clamp"), Negative::c
                                 std::pair{std::string_view("none"), Negative::none}};
 
 Vector3<double> read_unit_vector(const JsonReader& json) {
-  const Vector3<double> vector = read_vector(json);
+  Vector3<double> vector = read_vector(json);
   json.blame_for([&vector] {
     check_unit_vector(vector);
     return 0;
@@ -35,8 +35,8 @@ Vector3<double> read_unit_vector(const JsonReader& json) {
 
 ShadedSlab read_slab(const JsonReader& json) {
   json.only({"front", "back", "length", "front_normal", "back_normal"});
-  const ShadedSlab slab{json.at("front").number(), json.at("back").number(), json.at("length").number(0),
-                        read_unit_vector(json.at("front_normal")), read_unit_vector(json.at("back_normal"))};
+  ShadedSlab slab{json.at("front").number(), json.at("back").number(), json.at("length").number(0),
+                  read_unit_vector(json.at("front_normal")), read_unit_vector(json.at("back_normal"))};
   json.at("back_normal").blame_for([&slab] {
     check(slab);
     return 0;

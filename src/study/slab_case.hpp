@@ -29,6 +29,6 @@ bool is_slab_case(const JsonReader& json);
 SlabCase read_slab_case(const JsonReader& json, std::vector<std::string>& warnings);
 
 /// What `eval` answers.
-nlohmann::ordered_json evaluate(const SlabCase& slab);
+nlohmann::ordered_json evaluate(const SlabCase& asked);
 
 }  // namespace raytruth

@@ -11,7 +11,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 
 namespace raytruth {
 
@@ -21,8 +20,7 @@ static_assert(std::endian::native == std::endian::little, "the bytes of numbers 
 
 template <class Number>
 void append(std::string& bytes, Number number) {
-  std::array<char, sizeof(Number)> raw;
-  std::memcpy(raw.data(), &number, raw.size());
+  const auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(number);
   bytes.append(raw.data(), raw.size());
 }
 

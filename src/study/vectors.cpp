@@ -269,7 +269,7 @@ Problem grazing(Draws& draws, const Which& which) {
 /// How the vectors of a level are made.
 struct Recipe {
   VectorLevel level;
-  Problem (*make)(Draws& draws, const Which& which);
+  Problem (*make)(Draws& draws, const Which& which) = nullptr;
   int slabs = 4;
 };
 

@@ -80,7 +80,7 @@ void as_printed(const Crossing& crossing, bool backwards, DissertationAlgorithm 
   const std::size_t size = table.axes.size;
   const double length = table.axes.length;
   const auto [first, last] = distances_of(length, size);
-  const auto count = static_cast<std::size_t>(last - first + 1);
+  const std::size_t count = static_cast<std::size_t>(last - first) + 1;
   const auto distance = [first = first](std::size_t j) { return std::exp2(first + static_cast<int>(j)); };
 
   // color1d[j][i], of the interval that ends at entry i

@@ -66,7 +66,7 @@ class ExactTile {
         certified_(transfer, table.axes, Emission::associated),
         rising_(4 * lanes_),
         falling_(4 * lanes_),
-        texels_(2 * 4 * lanes_ * lanes_) {}
+        texels_(std::size_t{2} * 4 * lanes_ * lanes_) {}
 
   void operator()(std::size_t lower, std::size_t middle, std::size_t upper) {
     lower_ = lower;
@@ -78,7 +78,8 @@ class ExactTile {
     // Parabolas that are open downwards, lower ends in lanes; and those that are open upwards, upside down.
     for (std::size_t end = upper; end <= last_upper && lower + end <= 2 * middle; ++end) {
       const std::uint32_t too_deep = kernels_->parabolas(
-          entries_.view(), {.lower = signed_(lower), .direction = 1, .middle = signed_(middle), .upper = signed_(end)},
+          entries_.view(),
+          {.lower = index_of(lower), .direction = 1, .middle = index_of(middle), .upper = index_of(end)},
           rising_.data(), falling_.data());
       for (std::size_t lane = 0; lower + lane <= std::min(last_lower, end) && lower + lane + end <= 2 * middle; ++lane)
         put(lower + lane, end, rising_.data() + 4 * lane, falling_.data() + 4 * lane, (too_deep >> lane) % 2 != 0);
@@ -86,10 +87,10 @@ class ExactTile {
     for (std::size_t end = lower; end <= last_lower; ++end) {
       if (end + last_upper <= 2 * middle) continue;
       const std::uint32_t too_deep = kernels_->parabolas(mirrored_.view(),
-                                                         {.lower = signed_(last) - signed_(upper),
+                                                         {.lower = index_of(last) - index_of(upper),
                                                           .direction = -1,
-                                                          .middle = signed_(last - middle),
-                                                          .upper = signed_(last - end)},
+                                                          .middle = index_of(last - middle),
+                                                          .upper = index_of(last - end)},
                                                          rising_.data(), falling_.data());
       for (std::size_t lane = 0; upper + lane <= last_upper; ++lane)
         if (upper + lane >= end && end + upper + lane > 2 * middle)
@@ -100,7 +101,7 @@ class ExactTile {
   }
 
  private:
-  static std::ptrdiff_t signed_(std::size_t entry) { return static_cast<std::ptrdiff_t>(entry); }
+  static std::ptrdiff_t index_of(std::size_t entry) { return static_cast<std::ptrdiff_t>(entry); }
 
   /// The tile with the upper ends in front; one that lies on the table's diagonal has both.
   float* reverse() { return texels_.data() + (lower_ == upper_ ? 0 : 4 * lanes_ * lanes_); }

@@ -27,8 +27,8 @@ class IntervalSlabs {
  private:
   /// Part of an interval on which optics are linear, from its lower end to its upper one.
   struct Stretch {
-    std::size_t interval;
-    double share;  ///< of the interval's width
+    std::size_t interval = 0;
+    double share = 0;  ///< of the interval's width
     std::array<Optics, 2> ends;
   };
 

@@ -70,7 +70,7 @@ SecondOrderSlabs::vec4 SecondOrderSlabs::iterated(const std::array<double, 3>& s
 
 Certified SecondOrderSlabs::certified(const std::array<double, 3>& scalars) {
   slab_.pieces.front().polynomial = signal_of(scalars);
-  const Certified slab = integrate_(slab_);
+  Certified slab = integrate_(slab_);
   evaluations_ += slab.evaluations;
   return slab;
 }
