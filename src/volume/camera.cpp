@@ -17,7 +17,7 @@ namespace {
 constexpr double smallest_sine = 1e-9;
 
 Eigen::Vector3d finite(const std::array<double, 3>& point, const char* name) {
-  const Eigen::Vector3d vector(point[0], point[1], point[2]);
+  Eigen::Vector3d vector(point[0], point[1], point[2]);
   if (!vector.allFinite())
     throw InputError(fmt::format("{} [{}, {}, {}]; finite numbers are allowed", name, point[0], point[1], point[2]));
   return vector;

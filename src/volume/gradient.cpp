@@ -57,7 +57,7 @@ Vector3<double> voxel_gradient(const Grid& grid, const GradientFilter& filter, s
 
 Vector3<double> voxel_normal(const Grid& grid, const GradientFilter& filter, std::int64_t i, std::int64_t j,
                              std::int64_t k) {
-  const Vector3<double> normal = normalized(voxel_gradient(grid, filter, i, j, k));
+  Vector3<double> normal = normalized(voxel_gradient(grid, filter, i, j, k));
   if (filter.exaggeration == 0) return normal;
   Vector3<double> sum = Vector3<double>::Zero();
   double count = 0;

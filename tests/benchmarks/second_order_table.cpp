@@ -76,13 +76,14 @@ double plain_loop(const PiecewiseLinear& transfer, Table3<float>& table, int ite
       corrected[i][static_cast<std::size_t>(c)] = static_cast<float>(opacity * optics.color[c]);
     corrected[i][3] = static_cast<float>(opacity);
   }
-  const float last = static_cast<float>(n - 1);
+  const auto last = static_cast<float>(n - 1);
   return for_each_entry(table, [&](float front, float middle, float back, float* texel) {
     std::array<float, 4> slab{};
     const Parabola parabola(front, middle, back);
     for (int k = 0; k < iterations; ++k) {
       const float at =
           std::min(std::max(parabola((static_cast<float>(k) + 0.5F) / static_cast<float>(iterations)), 0.0F), last);
+      // NOLINTNEXTLINE(bugprone-incorrect-roundings): as such loops have it, and nothing is negative
       const auto& step = corrected[static_cast<std::size_t>(static_cast<int>(at + 0.5F))];
       const float transmittance = 1 - slab[3];
       for (std::size_t c = 0; c < 4; ++c) slab[c] += transmittance * step[c];
@@ -100,7 +101,7 @@ double same_numbers(const PiecewiseLinear& transfer, Table3<float>& table, int i
                   static_cast<float>(optics.color[2]), static_cast<float>(optics.extinction)};
   }
   entries[n] = entries[n - 1];
-  const float last = static_cast<float>(n - 1);
+  const auto last = static_cast<float>(n - 1);
   const float step = static_cast<float>(table.axes.length) / static_cast<float>(iterations);
   return for_each_entry(table, [&](float front, float middle, float back, float* texel) {
     std::array<float, 4> slab{};
@@ -110,7 +111,7 @@ double same_numbers(const PiecewiseLinear& transfer, Table3<float>& table, int i
           std::min(std::max(parabola((static_cast<float>(k) + 0.5F) / static_cast<float>(iterations)), 0.0F), last);
       const auto first = static_cast<std::size_t>(static_cast<int>(at));
       const float weight = at - static_cast<float>(first);
-      std::array<float, 4> optics;
+      std::array<float, 4> optics{};
       for (std::size_t c = 0; c < 4; ++c)
         optics[c] = entries[first][c] + weight * (entries[first + 1][c] - entries[first][c]);
       const float absorbed = (1 - slab[3]) * -std::expm1(-optics[3] * step);
@@ -194,7 +195,7 @@ void exact_against_plain_loop(benchmark::State& state) {
   double largest_error = 0;
   for (std::uint64_t i = 0; i < certified_entries; ++i) {
     const auto random = random_numbers(1, RandomStream::points, i);
-    std::array<std::size_t, 3> entry;
+    std::array<std::size_t, 3> entry{};
     for (std::size_t k = 0; k < 3; ++k) entry[k] = static_cast<std::size_t>(random[k] * static_cast<double>(axes.size));
     const auto expected = slabs({axes.scalar(entry[0]), axes.scalar(entry[1]), axes.scalar(entry[2])}, Ideal{});
     largest_error = std::max(largest_error,

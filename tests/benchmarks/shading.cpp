@@ -223,7 +223,7 @@ using Table = std::vector<Vec4>;
 std::array<Table, 4> make_tables() {
   std::array<Table, 4> tables;
   const PiecewiseLinear transfer = tent_transfer(4);
-  for (Table& table : tables) table.resize(table_size * table_size);
+  for (Table& table : tables) table.resize(std::size_t{table_size} * table_size);
   for (std::size_t back = 0; back < table_size; ++back)
     for (std::size_t front = 0; front < table_size; ++front) {
       const auto scalar = [](std::size_t i) { return static_cast<double>(i) / (table_size - 1); };
@@ -278,7 +278,7 @@ void linear_against_arc(benchmark::State& state) {
   benchmarks::run_paired(
       state, [&] { return shade_by_tables<LinearGradient>(tables, scalars, slabs); },
       [&] { return shade_by_tables<Method>(tables, scalars, slabs); });
-  const double count = static_cast<double>(slabs.size());
+  const auto count = static_cast<double>(slabs.size());
   state.counters["linear_nanoseconds"] = 1e9 * state.counters["subject_seconds"] / count;
   state.counters["arc_nanoseconds"] = 1e9 * state.counters["peer_seconds"] / count;
   state.counters["slower"] = state.counters["speedup"] - 1;

@@ -79,7 +79,7 @@ double xi_by_sum(const Grid& grid, const Ray& ray, const Samples<double>& sample
     const double u = (t - piece.start.high) / piece.length;
     const double v = 1 - u;
     const double approximate = v * v * v * b[0] + 3 * u * v * (v * b[1] + u * b[2]) + u * u * u * b[3];
-    const double value =
+    const auto value =
         trilinear_value<double>(grid, {ray.origin[0] + t * ray.direction[0], ray.origin[1] + t * ray.direction[1],
                                        ray.origin[2] + t * ray.direction[2]});
     sum += std::abs(value - approximate);

@@ -75,7 +75,7 @@ void four_rays_against_scalar(benchmark::State& state) {
   const std::vector<float> scalars = scalars_of(state.range(0) != 0);
   const SlabTable looked_up{table().values.data(), table_size, static_cast<float>(table_size - 1), 0};
   const auto four = [&] {
-    std::array<float, 16> rays;
+    std::array<float, 16> rays{};
     slab_kernel_versions()[version]->march_four(looked_up, scalars.data(), slab_count, rays.data());
     return rays[0] + rays[5] + rays[10] + rays[15];
   };
