@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <numbers>
 
 namespace raytruth::inline RAYTRUTH_LEVEL {
 
@@ -48,11 +50,10 @@ inline constexpr double exponential_error = 3 * unit_roundoff;
 /// e^y for every lane (or for one number); y below -700 counts as -700. No table and no branch.
 template <class Vector>
 Vector exponential(const Vector& y) {
-  constexpr double log2_e = 0x1.71547652b82fep0;
   constexpr double ln2_high = 0x1.62e42feep-1;  // 32 bits: its product with n is exact
   constexpr double ln2_low = 0x1.a39ef35793c76p-33;
   const auto clamped = larger<Vector>(-700, y);
-  const Vector shifted = multiply_add(clamped, Vector(log2_e), Vector(round_to_integer));
+  const Vector shifted = multiply_add(clamped, Vector(std::numbers::log2e), Vector(round_to_integer));
   const Vector n = shifted - round_to_integer;
   const Vector r = multiply_add(n, Vector(-ln2_low), multiply_add(n, Vector(-ln2_high), clamped));
   const Vector e_to_r = 1.0 + exponential_less_1(r);
@@ -74,11 +75,10 @@ class PowerOf2 {
   static constexpr double error_less_1 = 8 * unit_roundoff;
 
   explicit PowerOf2(const Vector& y) {
-    constexpr double ln2 = 0x1.62e42fefa39efp-1;
     const Vector shifted = y + round_to_integer;
     const Vector fraction = y - (shifted - round_to_integer);
     power_ = from_bits((to_bits(shifted) << 52) + to_bits(Vector(1)));
-    excess_ = exponential_less_1(Vector(ln2 * fraction));
+    excess_ = exponential_less_1(Vector(std::numbers::ln2 * fraction));
   }
 
   [[nodiscard]] Vector value() const { return multiply_add(power_, excess_, power_); }

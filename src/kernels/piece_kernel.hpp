@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 // For associated emission, O(u) = 1 - T(u) the opacity up to u and x' = dx/du,
@@ -38,11 +39,9 @@ constexpr double goal = -50.5;    ///< log2 of the truncation error, relative to
 constexpr double deepest = 32;    ///< optical depth in one go; deeper pieces are halved
 constexpr double most_error = 1;  ///< of an optical depth; beyond it, the crude bound
 constexpr double smallest = 0x1p-1000;
-constexpr double slack = 1 + 0x1p-20;   ///< second-order terms, and the rounding of the error bounds themselves
-constexpr double least_rate = 0x1p-24;  ///< of a largest |x'| where the truncation error is bounded
-constexpr double log2_e = 0x1.71547652b82fep0;
+constexpr double slack = 1 + 0x1p-20;       ///< second-order terms, and the rounding of the error bounds themselves
+constexpr double least_rate = 0x1p-24;      ///< of a largest |x'| where the truncation error is bounded
 constexpr double log2_e_above = 1.4426951;  // rounded up
-constexpr double ln_2 = 0x1.62e42fefa39efp-1;
 
 /// Rounding of the depth, relative: a term with 1 - x, two products, a sum and the length's share, 6; partial sums,
 /// Degree; the length, 4.
@@ -176,7 +175,7 @@ Prepared<Degree, Vector> prepare(const LinearPiece<Degree, Vector>& piece) {
                               piece.extinction_at_1 * larger(zero, Vector(zero - lowest)));
   result.depth_below = 2 * piece.length * result.below;
   result.is_shallow = result.depth + result.depth_below < Vector(deepest);
-  const Vector factor = select(result.is_shallow, Vector(-log2_e), zero);
+  const Vector factor = select(result.is_shallow, Vector(-std::numbers::log2e), zero);
   for (std::size_t j = 0; j <= Degree; ++j) result.integrand.exponent[j] = factor * depth[j];
   result.slope = magnitude(piece.extinction_at_1 - piece.extinction_at_0);
   result.depth_from_x = piece.length * result.slope * piece.x_error;
@@ -398,7 +397,7 @@ Weights<Vector> weights_of(const LinearPiece<Degree, Vector>& piece, const Prepa
   const auto& [integrand, reach, steepest, slope, below, depth, depth_below, depth_from_x, is_shallow] = prepared;
   // x at a node errs by Degree + 5 units; its product with weight and T, the length and the difference by 12.
   const Vector transmitted = sums.transmitted;
-  const Vector depth_sum = 3 * depth_below * transmitted - ln_2 * sums.exponent;
+  const Vector depth_sum = 3 * depth_below * transmitted - std::numbers::ln2 * sums.exponent;
   const Vector sum_error = transmitted * (PowerOf2<Vector>::error + (additions + (Degree + 17)) * unit) +
                            exponent_units<Degree> * unit * depth_sum;
   // By x and by T; the integral of T u du is at most half of that of T where T falls, exp(depth_below) times that

@@ -250,7 +250,7 @@ void report(benchmark::State& state, const Pieces& pieces, const Summary& summar
 /// Both integrals of each piece and its optical depth, with radii, against both integrals by quadratures of K that are
 /// as accurate as those radii. What bounds them is arithmetic: the time grows by equal steps with `nodes`, and a node
 /// of eight pieces side by side has 23 products, with or without a sum, of which a core makes two at once. What does
-/// not grow is as long as eleven nodes, mostly the bound of their number.
+/// not grow is as long as eleven nodes, half of it the bound of their number.
 void pieces_against_boost_and_gsl(benchmark::State& state, Mode mode, double depth) {
   const Pieces pieces = random_pieces(depth, 512);
   const auto summary = summary_of(mode, pieces);

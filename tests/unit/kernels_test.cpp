@@ -190,15 +190,52 @@ TEST(PieceIntegral, CoefficientsOutsideTheIntervalKeepTheBound) {
     }
 }
 
-TEST(PieceIntegral, AnErrorOfTheScalarIsCovered) {
-  for (const Emission emission : {Emission::associated, Emission::plain})
-    for (std::uint64_t i = 0; i < 16; ++i) {
-      auto piece = random_piece<3>(i, 2, 0.1, 0.9);
-      auto moved = piece;
-      for (double& x : moved.x) x += i % 2 == 0 ? 1e-4 : -1e-4;
-      piece.x_error = 1e-4;
-      expect_enclosed<3>(integrate(piece, emission), exact_integrals(moved, emission), 1e-2);
+/// The piece in all lanes.
+template <int Degree>
+LinearPiece<Degree, Eight> eightfold(const LinearPiece<Degree>& piece) {
+  LinearPiece<Degree, Eight> result;
+  for (std::size_t j = 0; j <= Degree; ++j) result.x[j].fill(piece.x[j]);
+  result.x_error.fill(piece.x_error);
+  result.extinction_at_0.fill(piece.extinction_at_0);
+  result.extinction_at_1.fill(piece.extinction_at_1);
+  result.length.fill(piece.length);
+  return result;
+}
+
+/// All of the scalar is off by its whole error: from rounding's size up, at all depths, in and out of [0, 1] and next
+/// to its ends, where tau may vanish.
+template <int Degree>
+void check_errors_of_the_scalar(Emission emission) {
+  constexpr std::array<std::array<double, 2>, 5> ranges{
+      {{0, 1}, {-0.4, 1.4}, {-0x1p-30, 0x1p-20}, {1 - 0x1p-20, 1}, {0.3, 0.3}}};
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    const auto [low, high] = ranges[i % ranges.size()];
+    auto piece = random_piece<Degree>(i, std::pow(10, 10.4 * uniform(90, i) - 9), low, high);
+    if (i % 3 == 0) piece.extinction_at_0 = 0;
+    piece.x_error = std::exp2(-17 - std::floor(32 * uniform(91, i)));
+    auto moved = piece;
+    for (std::size_t j = 0; j <= Degree; ++j) {
+      piece.x[j] = std::ldexp(std::round(std::ldexp(piece.x[j], 40)), -40);  // so that the sum is exact
+      moved.x[j] = piece.x[j] + (i % 2 == 0 ? 1 : -1) * piece.x_error;
     }
+    const auto exact = exact_integrals(moved, emission);
+    expect_enclosed<Degree>(integrate(piece, emission), exact, HUGE_VAL);
+    expect_enclosed<Degree>(integrate_scalar(piece, emission), exact, HUGE_VAL);
+    const auto together = integrate(eightfold(piece), emission);
+    expect_enclosed<Degree>({.weight_0 = together.weight_0[3],
+                             .weight_1 = together.weight_1[3],
+                             .weight_error = together.weight_error[3],
+                             .depth = together.depth[3],
+                             .depth_error = together.depth_error[3]},
+                            exact, 200 * piece.x_error + 3e-14 * (1 + to_double(abs(exact[2]))));
+  }
+}
+
+TEST(PieceIntegral, ErrorsOfTheScalarAreCovered) {
+  for (const Emission emission : {Emission::associated, Emission::plain}) {
+    check_errors_of_the_scalar<3>(emission);
+    check_errors_of_the_scalar<9>(emission);
+  }
 }
 
 TEST(PieceIntegral, DeepPiecesAreHalvedAndWhatIsHiddenIsBounded) {
