@@ -87,7 +87,7 @@ def fill(file, text, name, content):
     return filled
 
 
-TABLES = {"README.md": (ledger, conformance, benchmarks), "src/rules/README.md": (functions,)}
+TABLES = {"README.md": (ledger, conformance, benchmarks), "src/raytruth/rules/README.md": (functions,)}
 
 
 def main():

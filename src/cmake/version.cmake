@@ -1,5 +1,5 @@
 # cmake -D SOURCE= -D OUTPUT= -D VERSION= -D COMPILER= -D FLAGS= -P version.cmake
-# Writes what src/study/version.hpp declares; leaves the file alone where nothing changed.
+# Writes what src/experiments/version.hpp declares; leaves the file alone where nothing changed.
 
 # A source tree without git history of its own, perhaps unpacked inside somebody else's repository, has no commit.
 # No optional locks: a build must never be in the way of a git command.
@@ -21,7 +21,7 @@ file(
   CONFIGURE
   OUTPUT ${OUTPUT}
   CONTENT
-    [=[#include "study/version.hpp"
+    [=[#include "experiments/version.hpp"
 
 namespace raytruth {
 

@@ -1,12 +1,14 @@
 // The certified integral against quadrature in binary64 that certifies nothing (Boost, GSL) and against ball arithmetic
 // that does (Arb); crossings of a transfer function's points against a scalar Newton method.
 
-#include "reference/ray_integral.hpp"
-#include "core/random.hpp"
-#include "kernels/kernels.hpp"
+#include "raytruth/reference/ray_integral.hpp"
 #include "paired.hpp"
-#include "reference/arb_numbers.hpp"
-#include "reference/piece_integral.hpp"
+#include "raytruth/core/random.hpp"
+#include "raytruth/kernels/kernels.hpp"
+#include "raytruth/reference/arb/arb_numbers.hpp"
+#include "raytruth/reference/certified.hpp"
+#include "raytruth/reference/piece_integral.hpp"
+#include "raytruth/transfer/emission.hpp"
 
 #include <acb_calc.h>
 #include <fmt/format.h>

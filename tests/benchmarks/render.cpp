@@ -2,9 +2,9 @@
 // cubic of every cell, and certified. Preparation (tables, copies of voxels) is not timed.
 
 #include "paired.hpp"
-#include "render/renderer.hpp"
-#include "signals/random_field.hpp"
-#include "signals/trilinear_value.hpp"
+#include "raytruth/render/renderer.hpp"
+#include "raytruth/signals/random_field.hpp"
+#include "raytruth/signals/trilinear_value.hpp"
 
 #include <tbb/parallel_for.h>
 

@@ -7,11 +7,12 @@
 
 #include "paired.hpp"
 
-#include "core/random.hpp"
-#include "kernels/slab_kernels.hpp"
-#include "tables/fast_second_order.hpp"
-#include "tables/second_order.hpp"
-#include "transfer/study_transfers.hpp"
+#include "raytruth/core/random.hpp"
+#include "raytruth/kernels/slab_kernels.hpp"
+#include "raytruth/tables/fast_second_order.hpp"
+#include "raytruth/tables/second_order.hpp"
+#include "raytruth/transfer/emission.hpp"
+#include "raytruth/transfer/study_transfers.hpp"
 
 #include <tbb/global_control.h>
 

@@ -2,9 +2,11 @@
 // numbers; the quadratic arc against linear interpolation, with the look-ups of their tables (claim guetat-cost).
 
 #include "paired.hpp"
-#include "rules/rules.hpp"
-#include "shading/slab_shading.hpp"
-#include "transfer/study_transfers.hpp"
+#include "raytruth/core/named.hpp"
+#include "raytruth/rules/rules.hpp"
+#include "raytruth/shading/slab_shading.hpp"
+#include "raytruth/transfer/emission.hpp"
+#include "raytruth/transfer/study_transfers.hpp"
 
 #include <array>
 #include <cmath>
@@ -291,7 +293,7 @@ BENCHMARK(linear_against_arc<MinimaxArc>)->Arg(0)->Arg(1)->UseManualTime();
 void integrate(benchmark::State& state, const Shading& shading) {
   Lighting lighting;
   lighting.specular = 1;
-  lighting.highlight = catalogue::find_highlight("cone");
+  lighting.highlight = find_named(catalogue::highlights(), "cone");
   const PiecewiseLinear transfer = tent_transfer(4);
   const SlabOptics optics(transfer, 0.42, 0.55, 1);
   const SlabCosines cosines{0.9, 0.3, 0.98, 0.8, 0.7};

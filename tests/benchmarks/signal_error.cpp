@@ -1,13 +1,13 @@
 // The exact walk, exact xi against the papers' way of computing it, and two threads against one.
 
-#include "measures/signal_error.hpp"
-#include "catalogue.hpp"
-#include "measures/ray_ensemble.hpp"
+#include "raytruth/metrics/signal_error.hpp"
+#include "experiments/measure.hpp"
 #include "paired.hpp"
-#include "signals/random_field.hpp"
-#include "signals/trilinear.hpp"
-#include "signals/trilinear_value.hpp"
-#include "study/measure.hpp"
+#include "raytruth/catalogue.hpp"
+#include "raytruth/signals/random_field.hpp"
+#include "raytruth/signals/ray_ensemble.hpp"
+#include "raytruth/signals/trilinear.hpp"
+#include "raytruth/signals/trilinear_value.hpp"
 
 #include <tbb/task_arena.h>
 

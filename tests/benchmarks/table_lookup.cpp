@@ -5,10 +5,11 @@
 
 #include "paired.hpp"
 
-#include "core/random.hpp"
-#include "kernels/slab_kernels.hpp"
-#include "tables/exact.hpp"
-#include "transfer/study_transfers.hpp"
+#include "raytruth/core/random.hpp"
+#include "raytruth/kernels/slab_kernels.hpp"
+#include "raytruth/tables/exact.hpp"
+#include "raytruth/transfer/emission.hpp"
+#include "raytruth/transfer/study_transfers.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,11 +2,12 @@
 // dissertation, table 5.1).
 
 #include "paired.hpp"
-#include "tables/dissertation_linear.hpp"
-#include "tables/exact.hpp"
-#include "tables/fast_tables.hpp"
-#include "tables/subrange.hpp"
-#include "transfer/study_transfers.hpp"
+#include "raytruth/tables/dissertation_linear.hpp"
+#include "raytruth/tables/exact.hpp"
+#include "raytruth/tables/fast_tables.hpp"
+#include "raytruth/tables/subrange.hpp"
+#include "raytruth/transfer/emission.hpp"
+#include "raytruth/transfer/study_transfers.hpp"
 
 #include <tbb/global_control.h>
 

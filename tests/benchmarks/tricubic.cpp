@@ -1,12 +1,12 @@
 // Exact tricubic chains against tricubic samples, and virtual samples against true ones (Lee 2010, figure 4 and table
 // 1).
 
-#include "signals/tricubic.hpp"
-#include "measures/ray_ensemble.hpp"
+#include "raytruth/signals/tricubic.hpp"
 #include "paired.hpp"
-#include "rules/rules.hpp"
-#include "signals/random_field.hpp"
-#include "signals/tricubic_value.hpp"
+#include "raytruth/rules/rules.hpp"
+#include "raytruth/signals/random_field.hpp"
+#include "raytruth/signals/ray_ensemble.hpp"
+#include "raytruth/signals/tricubic_value.hpp"
 
 #include <array>
 #include <cmath>

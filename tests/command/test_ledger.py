@@ -9,7 +9,7 @@ import unittest
 from support import EXPERIMENT, SOURCE, ProgramTest
 from test_schemas import validator
 
-CLAIMS = json.loads((SOURCE / "src/study/claims.json").read_text())["claims"]
+CLAIMS = json.loads((SOURCE / "src/experiments/claims.json").read_text())["claims"]
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 

@@ -1,0 +1,251 @@
+#include "experiments/result.hpp"
+
+#include "experiments/version.hpp"
+#include "raytruth/catalogue.hpp"
+#include "raytruth/core/named.hpp"
+#include "raytruth/core/one_line.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+
+namespace raytruth {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string cpu_name() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("model name")) return line.substr(std::min(line.find(": ") + 2, line.size()));
+  return "unknown";
+}
+
+Json columns_json(const std::vector<Column>& columns) {
+  Json json = Json::object();
+  for (const Column& column : columns) {
+    Json& entry = json[column.name];
+    entry = {{"unit", column.unit}, {"description", column.description}};
+    if (column.is_key) entry["key"] = true;
+    if (!column.radius.empty()) entry["radius"] = column.radius;
+  }
+  return json;
+}
+
+Json published_json(const Experiment& experiment, const std::vector<Row>& rows, const std::vector<Column>& columns) {
+  Json json = Json::array();
+  for (const Claim& claim : experiment.claims) {
+    const Verdict verdict = judge(claim, rows, columns);
+    Json& entry = json.emplace_back(Json{{"claim", claim.name}});
+    if (!claim.part.empty()) entry["part"] = claim.part;
+    entry.update({{"stated", to_json(claim.stated)},
+                  {"measured", to_json(verdict.measured)},
+                  {"low", to_json(verdict.low)},
+                  {"high", to_json(verdict.high)},
+                  {"verdict", verdict.verdict},
+                  {"why", to_json(verdict.why)}});
+  }
+  return json;
+}
+
+Json checks_json(const Experiment& experiment, const std::vector<Row>& rows) {
+  Json json = Json::array();
+  for (const Check& check : experiment.checks) {
+    const CheckOutcome outcome = judge(check, rows);
+    json.push_back({{"bound", check.sentence},
+                    {"holds", outcome.holds},
+                    {"measured", to_json(outcome.measured)},
+                    {"limit", check.bound.limit},
+                    {"why", to_json(outcome.why)}});
+  }
+  return json;
+}
+
+/// How plots show the schemes.
+Json styles_json(const Experiment& experiment) {
+  Json json = Json::object();
+  for (const std::string& name : experiment.schemes) {
+    const IntegralScheme& scheme = *find_named(catalogue::integral_schemes(), name);
+    json[name] = {{"color", scheme.color}, {"marker", scheme.marker}, {"label", scheme.summary}};
+  }
+  return json;
+}
+
+/// A cell of the table of claims.
+std::string brief(const Json& value) {
+  if (value.is_null()) return "-";
+  return value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : shortened(value.get<std::string>());
+}
+
+}  // namespace
+
+Json to_json(const Value& value) {
+  return std::visit(
+      [](const auto& alternative) -> Json {
+        using Alternative = std::decay_t<decltype(alternative)>;
+        if constexpr (std::is_same_v<Alternative, std::monostate>) {
+          return nullptr;
+        } else {
+          if constexpr (std::is_same_v<Alternative, double>)
+            if (!std::isfinite(alternative)) throw std::logic_error("a row holds a number that is not finite");
+          return alternative;
+        }
+      },
+      value);
+}
+
+Json to_json(const Row& row) {
+  Json json = Json::object();
+  for (const auto& [name, value] : row) json[name] = to_json(value);
+  return json;
+}
+
+Row read_row(const JsonReader& json) {
+  Row row;
+  for (const auto& [name, item] : json.members()) {
+    Value& value = row.emplace_back(name, Value{}).second;
+    if (item.is_string())
+      value = item.json().get<std::string>();
+    else if (item.is_boolean())
+      value = item.boolean();
+    else if (item.json().is_number_integer())
+      value = item.json().get<std::int64_t>();
+    else if (!item.is_null())
+      value = item.number();
+  }
+  return row;
+}
+
+Json build_identity() {
+  return {{"version", version}, {"commit", commit}, {"compiler", compiler}, {"flags", flags}, {"cpu", cpu_name()}};
+}
+
+Json describe(const Field& field) {
+  Json json{{"size", field.grid.size}, {"data_min", field.data_range.first}, {"data_max", field.data_range.second}};
+  if (!field.file.empty()) json["file"] = field.file;
+  if (!field.file.empty()) json["repaired"] = field.repaired;
+  return json;
+}
+
+Json to_json(const Provenance& provenance) {
+  Json json = build_identity();
+  json["profile"] = provenance.profile;
+  json["threads"] = provenance.threads;
+  json["seconds"] = std::round(provenance.seconds * 1000) / 1000;
+  json["started"] =
+      fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(provenance.started)));
+  if (provenance.resumed) json["resumed"] = true;
+  if (provenance.gl)
+    json["gl"] = {{"platform", provenance.gl->platform},
+                  {"vendor", provenance.gl->vendor},
+                  {"renderer", provenance.gl->renderer},
+                  {"version", provenance.gl->version}};
+  return json;
+}
+
+Json make_result(const Experiment& experiment, const Provenance& provenance, const Json& fields,
+                 const std::vector<Row>& rows) {
+  const std::vector<Column> columns = result_columns(experiment);
+  Json json_rows = Json::array();
+  for (const Row& row : rows) json_rows.push_back(to_json(row));
+  return {{"raytruth", "result/1"},
+          {"experiment", experiment.json.json()},
+          {"provenance", to_json(provenance)},
+          {"styles", styles_json(experiment)},
+          {"fields", fields},
+          {"columns", columns_json(columns)},
+          {"rows", std::move(json_rows)},
+          {"published", published_json(experiment, rows, columns)},
+          {"checks", checks_json(experiment, rows)}};
+}
+
+std::string result_text(const Json& result) {
+  std::string text = "{";
+  for (const auto& [key, value] : result.items()) {
+    text += fmt::format("{}\n  {}: ", text.size() > 1 ? "," : "", Json(key).dump());
+    if (!value.is_structured() || value.empty()) {
+      text += value.dump();
+      continue;
+    }
+    text += value.is_array() ? "[" : "{";
+    std::string_view separator;
+    for (const auto& [name, item] : value.items()) {
+      text += fmt::format("{}\n    {}{}", separator, value.is_array() ? "" : Json(name).dump() + ": ", item.dump());
+      separator = ",";
+    }
+    text += value.is_array() ? "\n  ]" : "\n  }";
+  }
+  return text + "\n}\n";
+}
+
+JsonReader read_result(const std::string& path) {
+  JsonReader result = JsonReader::from_file(path);
+  result.at("raytruth").word({"result/1"});
+  result.at("experiment").members();
+  result.at("provenance").members();
+  for (const auto& [name, column] : result.at("columns").members()) {
+    if (const auto key = column.find("key")) key->boolean();
+    if (const auto radius = column.find("radius")) radius->text();
+  }
+  for (const JsonReader& row : result.at("rows").items(0)) {
+    for (const auto& [name, value] : row.members())
+      if (value.is_object() || value.is_array()) value.refuse_value("a text, a number, true, false or null");
+  }
+  for (const JsonReader& claim : result.at("published").items(0)) {
+    claim.at("claim").text();
+    claim.at("verdict").text();
+  }
+  for (const JsonReader& check : result.at("checks").items(0)) {
+    check.at("bound").text();
+    check.at("holds").boolean();
+  }
+  return result;
+}
+
+std::string claims_table(const Json& claims) {
+  const auto cell = [](const Json& claim, const char* name) {
+    return claim.contains(name) ? brief(claim.at(name)) : "-";
+  };
+  std::vector<std::array<std::string, 5>> table{{"claim", "published", "measured", "verdict", "experiment"}};
+  for (const Json& claim : claims) {
+    const std::string part = cell(claim, "part");
+    table.push_back({cell(claim, "claim") + (part == "-" ? "" : fmt::format(" ({})", part)), cell(claim, "stated"),
+                     claim.at("measured").is_null() ? "-"
+                                                    : fmt::format("{} ({} .. {})", cell(claim, "measured"),
+                                                                  cell(claim, "low"), cell(claim, "high")),
+                     cell(claim, "verdict"), cell(claim, "experiment")});
+  }
+  if (table.size() == 1) return {};
+  const bool has_experiments = claims.front().contains("experiment");
+  std::array<std::size_t, 4> widths{};
+  for (const auto& line : table)
+    for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  std::string text;
+  for (const auto& line : table) {
+    text += fmt::format("{:<{}}  {:<{}}  {:<{}}  ", line[0], widths[0], line[1], widths[1], line[2], widths[2]);
+    text += has_experiments ? fmt::format("{:<{}}  {}\n", line[3], widths[3], line[4]) : line[3] + "\n";
+  }
+  return text;
+}
+
+std::vector<std::string> broken_checks(const Json& result) {
+  std::vector<std::string> lines;
+  for (const Json& check : result.at("checks")) {
+    if (check.at("holds").get<bool>()) continue;
+    lines.push_back(fmt::format("check: does not hold: {}: measured {}, limit {}{}",
+                                check.at("bound").get<std::string>(), brief(check.at("measured")),
+                                brief(check.at("limit")),
+                                check.at("why").is_null() ? "" : " (" + brief(check.at("why")) + ")"));
+  }
+  return lines;
+}
+
+}  // namespace raytruth

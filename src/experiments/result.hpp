@@ -1,0 +1,58 @@
+#pragma once
+
+#include "experiments/experiment.hpp"
+#include "experiments/row.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace raytruth {
+
+/// Throws std::logic_error for a number that is not finite: rows never hold one.
+nlohmann::ordered_json to_json(const Value& value);
+nlohmann::ordered_json to_json(const Row& row);
+/// Throws InputError for what is no flat record.
+Row read_row(const JsonReader& json);
+
+/// How and when a result came to be.
+struct Provenance {
+  std::string profile;
+  int threads = 0;
+  double seconds = 0;
+  std::chrono::system_clock::time_point started;
+  bool resumed = false;
+  std::optional<GlIdentity> gl = {};  ///< what ran the shaders
+};
+
+/// What decides about the bytes of rows besides the experiment: version, commit, compiler, flags, cpu.
+nlohmann::ordered_json build_identity();
+
+/// That, and how and when.
+nlohmann::ordered_json to_json(const Provenance& provenance);
+
+/// What a result says of a field: size, range of the data, file.
+nlohmann::ordered_json describe(const Field& field);
+
+/// The result of an experiment as experiments/schemas/result.json describes it. `fields` has what `describe` gives of
+/// every field, or why it is refused.
+nlohmann::ordered_json make_result(const Experiment& experiment, const Provenance& provenance,
+                                   const nlohmann::ordered_json& fields, const std::vector<Row>& rows);
+
+/// A document as text that reads well and compares well: a line for every row, column, claim and check.
+std::string result_text(const nlohmann::ordered_json& result);
+
+/// Reads a result and checks its form as far as the program uses it. Throws InputError.
+JsonReader read_result(const std::string& path);
+
+/// Claims as a result's `published` has them, or the ledger's rows, for a terminal: what is stated, what was measured,
+/// the verdict, and the experiment where they name one.
+std::string claims_table(const nlohmann::ordered_json& claims);
+
+/// A line for every check of the result that does not hold.
+std::vector<std::string> broken_checks(const nlohmann::ordered_json& result);
+
+}  // namespace raytruth

@@ -1,0 +1,88 @@
+#pragma once
+
+#include "experiments/row.hpp"
+#include "raytruth/documents/json/json_reader.hpp"
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace raytruth {
+
+/// The rows whose cells equal one of the values, for every column named. A refused row lacks most of its cells: it is
+/// among them unless one of those it has says otherwise.
+using Selector = std::vector<std::pair<std::string, std::vector<Value>>>;
+
+/// A column's value >= limit, or <= limit.
+struct Bound {
+  std::string column;
+  bool at_least = false;
+  double limit = 0;
+};
+
+/// What a publication states, and the rows that answer it: a figure, `stated` +- half of `resolution`, against the one
+/// row selected; or a sentence, which `test` on all rows selected decides; or neither, where there is nothing to
+/// measure and `why` says so.
+struct Claim {
+  std::string name;
+  std::string part;  ///< which of several figures of the claim this is; empty: the only one
+  Value stated;
+  double resolution = 0;
+  std::optional<Selector> rows;
+  std::string measured;  ///< column of a figure
+  std::string low;       ///< column; empty: measured minus its radius
+  std::string high;      ///< column; empty: measured plus its radius
+  std::optional<Bound> test;
+  std::string why;
+};
+
+/// A bound that an experiment asserts on all rows selected.
+struct Check {
+  std::string sentence;
+  Selector rows;
+  Bound bound;
+};
+
+/// What the rows say of a claim.
+struct Verdict {
+  Value measured;
+  Value low;
+  Value high;
+  std::string verdict;  ///< "reproduced", "contradicted" or "not comparable"
+  Value why;
+};
+
+/// What the rows say of a check; `measured` is the value that comes closest to breaking it.
+struct CheckOutcome {
+  bool holds = false;
+  Value measured;
+  Value why;
+};
+
+/// What selectors and bounds may name.
+struct RowNames {
+  std::vector<std::string> columns;
+  std::vector<std::string> measures;
+  std::vector<std::string> fields;
+  std::vector<std::string> transfers;
+  std::vector<std::string> schemes;
+};
+
+/// Reads the rows that an experiment's claims, checks and plots name. Throws InputError.
+Selector read_selector(const JsonReader& json, const RowNames& names);
+
+/// Reads the members of an experiment's "published" and "checks". Throws InputError.
+Claim read_claim(const JsonReader& json, const RowNames& names);
+Check read_check(const JsonReader& json, const RowNames& names);
+
+Verdict judge(const Claim& claim, const std::vector<Row>& rows, const std::vector<Column>& columns);
+CheckOutcome judge(const Check& check, const std::vector<Row>& rows);
+
+/// A cell of a row; null where the row has no such key.
+const Value& cell(const Row& row, std::string_view name);
+
+/// A cell as a number, if it is one.
+std::optional<double> as_number(const Value& value);
+
+}  // namespace raytruth

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "experiments/row.hpp"
+#include "raytruth/core/chain.hpp"
+#include "raytruth/schemes/samples.hpp"
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace raytruth {
+
+/// How samples get closer in a study of orders: inside every cell alike, so that no interval crosses a border, or along
+/// the whole ray.
+enum class Regime { cells, constant };
+
+inline constexpr std::array regimes{std::pair{Regime::cells, std::string_view("cells")},
+                                    std::pair{Regime::constant, std::string_view("constant")}};
+
+/// Steps 2^-3 to 2^-8.
+inline constexpr std::size_t level_count = 6;
+
+/// Of a cell or of a voxel.
+double step_of(std::size_t level);
+
+void sample(const Chain<3>& signal, Regime regime, std::size_t level, Samples<double>& samples);
+
+/// Keys of the rows: `regime`, `scheme`, `part` (point or fit), `step`.
+std::vector<Column> convergence_columns();
+
+/// What the fit of a quantity says: `order_NAME` and its residual and finest step. `errors` is the column it fits.
+std::vector<Column> order_columns(const std::string& name, const std::string& errors);
+
+/// Errors by level, and how far each may be off.
+struct LevelError {
+  double error = 0;
+  double radius = 0;
+};
+
+void add_order(Row& row, const std::string& name, std::span<const LevelError> levels);
+
+}  // namespace raytruth

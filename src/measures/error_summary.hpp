@@ -1,0 +1,33 @@
+#pragma once
+
+#include "experiments/row.hpp"
+#include "raytruth/schemes/scheme_integral.hpp"
+
+#include <string>
+#include <vector>
+
+namespace raytruth {
+
+/// Signed errors of colour and opacity, one of each ray, and a bound on how far any of them may be from the true one.
+struct RayErrors {
+  std::vector<Difference> rays;
+  double radius = 0;
+
+  void add(const Difference& error, double error_radius);
+};
+
+/// The largest magnitude among the channels.
+double color_magnitude(const Difference& error);
+
+/// Root mean squares over rays, and for the colour over channels too; 0 without rays.
+double rms_opacity(const RayErrors& errors);
+double rms_color(const RayErrors& errors);
+
+/// The columns that `add_errors` fills in: for opacity and colour bias (the signed mean), root mean square, and of the
+/// magnitudes median, 95th percentile and maximum; and `radius`.
+std::vector<Column> error_columns(const std::string& unit, const std::string& of_what);
+
+/// The cells of these columns, times `scale`; null without rays.
+void add_errors(Row& row, const RayErrors& errors, double scale = 1);
+
+}  // namespace raytruth

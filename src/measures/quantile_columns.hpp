@@ -1,0 +1,21 @@
+#pragma once
+
+#include "experiments/row.hpp"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace raytruth {
+
+/// The quantiles that rows show of every distribution, in percent.
+inline constexpr std::array shown_percents{5, 25, 50, 75, 95};
+
+/// NAME_p05 ... NAME_p95. `radius` names the column that bounds their rounding error; empty: none.
+std::vector<Column> quantile_columns(const std::string& name, const std::string& unit, const std::string& description,
+                                     const std::string& radius = {});
+
+/// The cells of these columns: quantiles of ascending values, times `scale`; null where there are no values.
+void add_quantiles(Row& row, const std::string& name, const std::vector<double>& sorted, double scale = 1);
+
+}  // namespace raytruth

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "experiments/experiment.hpp"
+#include "raytruth/core/chain.hpp"
+#include "raytruth/reference/certified.hpp"
+#include "raytruth/reference/ray_integral.hpp"
+#include "raytruth/schemes/sampling.hpp"
+#include "raytruth/schemes/scheme_integral.hpp"
+#include "raytruth/transfer/emission.hpp"
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace raytruth {
+
+/// A ray of an experiment under one of its transfer functions.
+struct StudiedRay {
+  std::size_t index;
+  const Chain<3>& signal;
+  const Certified& truth;     ///< of this chain of cubics, which is the signal
+  SchemeIntegral& integrate;  ///< under the same transfer function
+};
+
+/// Calls work(ray) for every ray of the experiment through the field whose signal is not constant, in parallel: it
+/// writes to places of the ray's own.
+void study_rays(const Experiment& experiment, const Field& field, const PiecewiseLinear& transfer,
+                const std::function<void(const StudiedRay&)>& work);
+
+/// Samples of the signal as the experiment asks for.
+void sample(const Chain<3>& signal, const Sampling& sampling, Samples<double>& samples);
+
+/// The experiment's schemes in the catalogue.
+std::vector<const IntegralScheme*> schemes_of(const Experiment& experiment);
+
+/// "associated" or "plain".
+std::string emission_name(Emission emission);
+
+/// Keys of the rows of studies of colour and opacity: `transfer`, `emission`.
+std::vector<Column> transfer_columns();
+Row transfer_keys(const Experiment& experiment, const NamedTransfer& transfer);
+
+/// Further keys: `sampling`, `step`.
+std::vector<Column> sampling_columns();
+void add_sampling(Row& row, const Sampling& sampling);
+
+/// How many rays there were: `rays`, `rays_constant`.
+std::vector<Column> count_columns();
+void add_counts(Row& row, const Experiment& experiment, std::size_t studied);
+
+}  // namespace raytruth

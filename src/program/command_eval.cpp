@@ -1,0 +1,54 @@
+#include "experiments/output.hpp"
+#include "program/commands.hpp"
+#include "raytruth/documents/case.hpp"
+#include "raytruth/documents/scene_case.hpp"
+#include "raytruth/documents/slab_case.hpp"
+#include "raytruth/volume/files/find_volume.hpp"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <nlohmann/json.hpp>
+
+#include <utility>
+#include <variant>
+
+namespace raytruth {
+
+int evaluate_cases(const EvalOptions& options) {
+  const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+
+  const JsonReader document = JsonReader::from_file(options.file);
+  CaseReader reader(volume_folders(options.data));
+  std::vector<std::string> warnings;
+  std::vector<std::variant<Case, SlabCase, SceneFile>> cases;
+  for (const JsonReader& item : document.is_array() ? document.items() : std::vector{document})
+    if (is_slab_case(item)) {
+      cases.emplace_back(read_slab_case(item, warnings));
+    } else if (is_scene_case(item)) {
+      SceneFile scene = read_scene(item, {.folders = volume_folders(options.data), .opacity = {}});
+      warnings.insert(warnings.end(), scene.warnings.begin(), scene.warnings.end());
+      cases.emplace_back(std::move(scene));
+    } else {
+      cases.emplace_back(reader.read(item, warnings));
+    }
+  for (const std::string& warning : warnings) say(warning);
+
+  std::vector<nlohmann::ordered_json> answers(cases.size());
+  std::vector<std::string> errors(cases.size());
+  tbb::parallel_for(std::size_t{0}, cases.size(), [&](std::size_t i) {
+    try {
+      answers[i] = std::visit([](const auto& asked) { return evaluate(asked); }, cases[i]);
+    } catch (const InputError& error) {
+      errors[i] = error.what();
+    }
+  });
+  // The first one in the file, whichever thread met one first.
+  for (const std::string& error : errors)
+    if (!error.empty()) throw InputError(error);
+  print((document.is_array() ? nlohmann::ordered_json(answers) : answers.front()).dump(2) + "\n");
+  return 0;
+}
+
+}  // namespace raytruth

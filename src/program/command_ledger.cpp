@@ -1,0 +1,63 @@
+#include "experiments/ledger.hpp"
+#include "experiments/output.hpp"
+#include "experiments/python.hpp"
+#include "experiments/result.hpp"
+#include "experiments/texts.hpp"
+#include "program/commands.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+namespace raytruth {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The results of a folder by name; not what else is JSON there, nor the ledger itself.
+std::vector<JsonReader> results_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  if (error) throw InputError(fmt::format("{}: {}; a folder of results is allowed", folder.string(), error.message()));
+  std::sort(files.begin(), files.end());
+  std::vector<JsonReader> results;
+  for (const fs::path& file : files) {
+    const JsonReader json = JsonReader::from_file(file.string());
+    const auto format = json.is_object() ? json.find("raytruth") : std::nullopt;
+    if (!format || format->json() != "result/1") continue;
+    if (json.at("experiment").at("name").text() != "ledger") results.push_back(read_result(file.string()));
+  }
+  if (results.empty())
+    throw InputError(fmt::format("{}: found no results; what `raytruth run` writes is allowed", folder.string()));
+  return results;
+}
+
+void write_page(const fs::path& ledger, const fs::path& page, const std::string& plots) {
+  const auto temporary = temporary_beside(page);
+  const auto outcome = run_python(ledger_page_script, {ledger.string(), plots, temporary.string()});
+  std::error_code ignored;
+  if (outcome.status == 0) return move_into_place(temporary, page);
+  fs::remove(temporary, ignored);
+  throw InputError(fmt::format("{}: cannot be written: {}", page.string(), outcome.last_error));
+}
+
+}  // namespace
+
+int keep_ledger(const LedgerOptions& options) {
+  std::vector<JsonReader> results;
+  for (const std::string& path : options.results) results.push_back(read_result(path));
+  if (results.empty()) results = results_in("results");
+  const nlohmann::ordered_json ledger = make_ledger(results);
+  write_whole(options.file, result_text(ledger));
+  if (!options.page.empty()) write_page(options.file, options.page, options.plots);
+  print(claims_table(ledger.at("rows")));
+  return 0;
+}
+
+}  // namespace raytruth

@@ -1,0 +1,98 @@
+#include "experiments/experiment_folder.hpp"
+#include "experiments/measure.hpp"
+#include "experiments/output.hpp"
+#include "program/commands.hpp"
+#include "raytruth/catalogue.hpp"
+#include "raytruth/core/named.hpp"
+#include "raytruth/shading/slab_shading.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <string>
+
+namespace raytruth {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class Entries>
+Json entries_json(const Entries& entries) {
+  Json list = Json::array();
+  for (const std::string_view name : names_of(entries))
+    list.push_back({{"name", name}, {"summary", find_named(entries, name)->summary}});
+  return list;
+}
+
+Json schemes_json() {
+  Json list = Json::array();
+  for (const IntegralScheme& scheme : catalogue::integral_schemes()) {
+    Json& entry = list.emplace_back(Json{{"name", scheme.name},
+                                         {"summary", scheme.summary},
+                                         {"source", scheme.source},
+                                         {"family", family(scheme)},
+                                         {"color_order", scheme.order.color},
+                                         {"opacity_order", scheme.order.opacity}});
+    catalogue::visit_scheme(scheme.name, [&entry]<class S>() {
+      entry.update({{"signal_order", S::info.order},
+                    {"exact_degree", S::info.exact_degree},
+                    {"extra_fetches_per_interval", S::info.extra_fetches_per_interval}});
+    });
+  }
+  return list;
+}
+
+Json experiments_json() {
+  Json list = Json::array();
+  for (const auto& [name, question, file] : find_experiments())
+    list.push_back({{"name", name}, {"summary", question}, {"file", file.string()}});
+  return list;
+}
+
+Json list_of(const std::string& kind) {
+  if (kind == "signals") return entries_json(catalogue::signals);
+  if (kind == "fields") return entries_json(catalogue::fields);
+  if (kind == "transfers") return entries_json(catalogue::transfers);
+  if (kind == "samplings") return entries_json(catalogue::samplings);
+  if (kind == "schemes") return schemes_json();
+  if (kind == "measures") return entries_json(measures());
+  if (kind == "shadings") return entries_json(catalogue::shadings());
+  if (kind == "tables") return entries_json(catalogue::table_builders());
+  if (kind == "experiments") return experiments_json();
+  return Json::array();
+}
+
+std::string text_of(const std::string& kind) {
+  const Json list = list_of(kind);
+  std::size_t width = 0;
+  for (const Json& entry : list) width = std::max(width, entry.at("name").get_ref<const std::string&>().size());
+  std::string text = fmt::format("{}{}\n", kind, list.empty() ? ": none" : "");
+  for (const Json& entry : list)
+    text += fmt::format("  {:<{}}  {}\n", entry.at("name").get<std::string>(), width,
+                        entry.at("summary").get<std::string>());
+  return text;
+}
+
+}  // namespace
+
+const std::vector<std::string>& listed_kinds() {
+  static const std::vector<std::string> kinds{"signals",  "fields",   "transfers", "samplings",  "schemes",
+                                              "measures", "shadings", "tables",    "experiments"};
+  return kinds;
+}
+
+int list_ingredients(const ListOptions& options) {
+  if (options.json) {
+    Json all = Json::object();
+    for (const std::string& kind : listed_kinds()) all[kind] = list_of(kind);
+    print((options.kind.empty() ? all : all.at(options.kind)).dump(2) + "\n");
+    return 0;
+  }
+  for (const std::string& kind : options.kind.empty() ? listed_kinds() : std::vector{options.kind})
+    print(text_of(kind));
+  return 0;
+}
+
+}  // namespace raytruth

@@ -1,0 +1,104 @@
+#include "experiments/output.hpp"
+#include "program/commands.hpp"
+#include "raytruth/core/one_line.hpp"
+#include "raytruth/documents/conformance/vectors_score.hpp"
+#include "raytruth/documents/json/input.hpp"
+#include "raytruth/documents/json/json_reader.hpp"
+#include "raytruth/reference/certified.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <set>
+
+namespace raytruth {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Certified read_truth(const JsonReader& json) {
+  json.only({"color", "opacity", "error_bound"});
+  const auto color = json.at("color").numbers(3);
+  if (color.size() != 3) json.at("color").refuse_value("a list of 3 numbers");
+  return {.color = {color[0], color[1], color[2]},
+          .opacity = json.at("opacity").number(),
+          .radius = json.at("error_bound").number(0)};
+}
+
+/// Of the vectors what a score needs: their answers are still to come.
+std::vector<ScoredVector> read_vectors(const std::string& path) {
+  const JsonReader document = JsonReader::from_file(path);
+  document.at("raytruth").word({"vectors/1"});
+  document.only({"raytruth", "seed", "levels", "vectors"});
+  std::vector<ScoredVector> vectors;
+  std::set<std::string> ids;
+  for (const JsonReader& vector : document.at("vectors").items()) {
+    vector.only({"id", "level", "emission", "signal", "slab", "transfer_function", "reference"});
+    vectors.push_back(
+        {vector.at("id").text(), vector.at("level").text(), read_truth(vector.at("reference")), std::nullopt});
+    if (!ids.insert(vectors.back().id).second) vector.at("id").refuse_value("each id once");
+  }
+  return vectors;
+}
+
+/// Gives the vectors their answers.
+void take_answers(std::vector<ScoredVector>& vectors, const ScoreOptions& options) {
+  auto answers = read_answers(options.answers);
+  std::vector<std::string> missing;
+  for (ScoredVector& vector : vectors) {
+    const auto answer = answers.extract(vector.id);
+    if (answer)
+      vector.answer = answer.mapped();
+    else
+      missing.push_back(vector.id);
+  }
+  const std::string name = input_name(options.answers);
+  if (!answers.empty()) {
+    std::vector<std::string> ids;
+    for (const ScoredVector& vector : vectors) ids.push_back(vector.id);
+    const std::string& unknown = answers.begin()->first;
+    const auto closest = closest_word(unknown, ids);
+    throw InputError(fmt::format("{}: found the id '{}'{}; ids of {} are allowed", name, shortened(unknown),
+                                 closest.empty() ? "" : fmt::format(" (perhaps {})", closest),
+                                 input_name(options.vectors)));
+  }
+  if (!missing.empty())
+    say(fmt::format("{}: no answer for {} of {} vectors, which count as no digits; the first is {}", name,
+                    missing.size(), vectors.size(), missing.front()));
+}
+
+Json scores_json(const std::vector<LevelScore>& scores) {
+  Json list = Json::array();
+  for (const LevelScore& score : scores)
+    list.push_back({{"level", score.level},
+                    {"cases", score.cases},
+                    {"answered", score.answered},
+                    {"digits_min", score.digits_min},
+                    {"digits_median", score.digits_median},
+                    {"worst", score.worst}});
+  return list;
+}
+
+std::string scores_text(const std::vector<LevelScore>& scores) {
+  std::size_t width = 0;
+  for (const LevelScore& score : scores) width = std::max(width, score.level.size());
+  std::string text = fmt::format("{:<{}}  cases  answered  digits: least  median  worst case\n", "level", width);
+  for (const LevelScore& score : scores)
+    text += fmt::format("{:<{}}  {:5}  {:8}  {:13.2f}  {:6.2f}  {}\n", score.level, width, score.cases, score.answered,
+                        score.digits_min, score.digits_median, score.worst);
+  return text;
+}
+
+}  // namespace
+
+int score_answers(const ScoreOptions& options) {
+  std::vector<ScoredVector> vectors = read_vectors(options.vectors);
+  take_answers(vectors, options);
+  const auto scores = score(vectors);
+  print(options.json ? scores_json(scores).dump(2) + "\n" : scores_text(scores));
+  return 0;
+}
+
+}  // namespace raytruth

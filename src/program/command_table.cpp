@@ -1,0 +1,81 @@
+#include "experiments/output.hpp"
+#include "experiments/result.hpp"
+#include "program/commands.hpp"
+#include "raytruth/documents/table_case.hpp"
+#include "raytruth/tables/table_file.hpp"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace raytruth {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using MakeBytes = std::string (*)(const std::vector<std::size_t>&, const std::vector<double>&, const TableFormat&);
+
+MakeBytes writer_of(const std::filesystem::path& file) {
+  if (file.extension() == ".npy") return npy_bytes;
+  if (file.extension() == ".nrrd") return nrrd_bytes;
+  throw InputError(fmt::format("command line: -o {}: found a name that ends in \"{}\"; .npy and .nrrd are allowed",
+                               file.string(), file.extension().string()));
+}
+
+/// What a renderer's author wants to know of the table, beside it.
+Json description(const TableCase& asked, const MadeTable& table, const std::filesystem::path& file) {
+  Json text{{"raytruth", "table/1"},
+            {"table", file.filename().string()},
+            {"shape", table.shape},
+            {"axes", table.axes},
+            {"format", std::string(asked.format.name)},
+            {"entries",
+             "entry i of n stands for low + (high - low) i / (n - 1); as a texture it has its centre at "
+             "(i + 1/2) / n"}};
+  if (asked.transfer) text["colors"] = "opacity-weighted: composite with C += T C_slab, T *= 1 - opacity";
+  text["error"] = table.error;
+  text["case"] = asked.json.json();
+  text["build"] = build_identity();
+  return text;
+}
+
+}  // namespace
+
+int write_table(const TableOptions& options) {
+  const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  const std::filesystem::path file = options.file;
+  const MakeBytes make_bytes = writer_of(file);
+  std::vector<std::string> warnings;
+  const JsonReader json = JsonReader::from_file(options.table_case);
+  const TableCase asked = read_table_case(json, warnings);
+  if (make_bytes == nrrd_bytes) json.at("format").blame_for([&] { return nrrd_bytes({}, {}, asked.format); });
+  for (const std::string& warning : warnings) say(warning);
+
+  const MadeTable table = make_table(asked);
+  const auto is_beyond = [](double value) { return value > 1; };
+  const auto beyond = std::count_if(table.values.begin(), table.values.end(), is_beyond);
+  if (asked.format.is_texel && asked.format.type != TexelType::float32 && asked.format.type != TexelType::float16 &&
+      beyond > 0)
+    say(fmt::format("warning: {}: {} numbers above 1 are clamped to it, as {} holds no larger ones", options.table_case,
+                    beyond, asked.format.name));
+
+  // Both files or none: the table waits beside its place until its description is written.
+  const std::filesystem::path temporary = temporary_beside(file);
+  write_whole(temporary, make_bytes(table.shape, table.values, asked.format));
+  try {
+    write_whole(file.string() + ".json", description(asked, table, file).dump(2) + "\n");
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw;
+  }
+  move_into_place(temporary, file);
+  return 0;
+}
+
+}  // namespace raytruth

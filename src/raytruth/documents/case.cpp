@@ -1,0 +1,296 @@
+#include "raytruth/documents/case.hpp"
+
+#include "raytruth/catalogue.hpp"
+#include "raytruth/core/named.hpp"
+#include "raytruth/documents/case_json.hpp"
+#include "raytruth/documents/read_transfer_function.hpp"
+#include "raytruth/documents/volume_source.hpp"
+#include "raytruth/metrics/signal_error.hpp"
+#include "raytruth/reference/ray_integral.hpp"
+#include "raytruth/schemes/scheme_integral.hpp"
+#include "raytruth/signals/marschner_lobb.hpp"
+#include "raytruth/signals/tricubic.hpp"
+#include "raytruth/signals/trilinear.hpp"
+#include "raytruth/volume/files/read_volume.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace raytruth {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Differences, and parabolas through values at uneven distances, stay within binary64.
+constexpr double largest_value = 0x1p900;
+
+constexpr std::string_view why_no_integral = "the case states no transfer function";
+
+std::array<double, 3> read_place(const JsonReader& json) {
+  const Vector3<double> vector = read_vector(json);
+  return {vector[0], vector[1], vector[2]};
+}
+
+void read_piecewise_polynomial(const JsonReader& json, Case& ray) {
+  json.only({"kind", "breaks", "coefficients"});
+  const auto breaks = json.at("breaks").numbers();
+  const auto places = json.at("breaks").items(2);
+  if (breaks.front() != 0) places.front().refuse_value("0");
+  for (std::size_t i = 1; i < breaks.size(); ++i)
+    if (!(breaks[i - 1] < breaks[i])) places[i].refuse_value(fmt::format("a number > {}", breaks[i - 1]));
+  std::vector<std::vector<double>> coefficients;
+  for (const JsonReader& piece : json.at("coefficients").items())
+    coefficients.push_back(piece.numbers(largest_degree + 1));
+  auto chain = json.at("coefficients").blame_for([&] { return piecewise_polynomial(breaks, coefficients); });
+  if (ray.transfer) ray.signal_error = piecewise_polynomial_error(breaks, coefficients, chain);
+  ray.signal = std::move(chain);
+}
+
+/// Its origin, direction and length; the direction is checked.
+Ray read_ray(const JsonReader& json) {
+  Ray ray{.origin = read_place(json.at("origin")), .direction = read_place(json.at("direction"))};
+  json.at("direction").blame_for([&ray] { return unit_direction(ray.direction); });
+  if (const auto length = json.find("length")) ray.length = length->number(0);
+  return ray;
+}
+
+void read_marschner_lobb(const JsonReader& json, Case& ray) {
+  json.only({"kind", "origin", "direction", "length"});
+  const MarschnerLobbRay formula{read_ray(json)};
+  ray.signal = json.at("origin").blame_for([&] { return trace_marschner_lobb(formula.ray); });
+  ray.formula = formula;
+}
+
+void read_analytic(const JsonReader& json, Case& ray) {
+  json.only({"kind", "name"});
+  std::vector<std::string_view> names;
+  for (const AnalyticSignal& signal : analytic_signals()) names.push_back(signal.name);
+  const std::string name = json.at("name").word(names);
+  const AnalyticSignal& formula = *std::find_if(analytic_signals().begin(), analytic_signals().end(),
+                                                [&name](const AnalyticSignal& signal) { return signal.name == name; });
+  ray.signal = expand(formula);
+  ray.formula = formula;
+}
+
+std::vector<std::string_view> scheme_names() {
+  std::vector<std::string_view> names;
+  for (const IntegralScheme& scheme : catalogue::integral_schemes()) names.push_back(scheme.name);
+  return names;
+}
+
+template <int Degree>
+void check_values(const JsonReader& json, const Chain<Degree>& signal) {
+  for (const auto& piece : signal.pieces)
+    for (const double value : piece.polynomial.coefficients)
+      if (!(std::abs(value) <= largest_value))
+        json.refuse(fmt::format("values up to {}", value), "a signal of values up to 2^900 in magnitude");
+}
+
+bool is_refused(const Json& answer) { return answer.contains("status") && answer["status"] == "refused"; }
+
+template <int Degree>
+void take_samples(const Chain<Degree>& signal, const Sampling& sampling, Samples<double>& samples) {
+  if (sampling.step) return sample_constant(signal, *sampling.step, samples);
+  if (2 * signal.pieces.size() + 1 > largest_sample_count)
+    throw InputError(fmt::format("found {} cells on a ray; at most {} samples are allowed", signal.pieces.size(),
+                                 largest_sample_count));
+  sample_cells(signal, samples);
+}
+
+bool is_finite(const Vector3<double>& color, double opacity) {
+  return color.isFinite().all() && std::isfinite(opacity);
+}
+
+/// The certified answer to the case.
+template <int Degree>
+Certified truth_of(const Case& ray, const Chain<Degree>& signal) {
+  if (const auto* const marschner_lobb = std::get_if<MarschnerLobbRay>(&ray.formula))
+    return arb_integral(*marschner_lobb, *ray.transfer, ray.emission);
+  if (const auto* const analytic = std::get_if<AnalyticSignal>(&ray.formula))
+    return arb_integral(*analytic, *ray.transfer, ray.emission);
+  return RayIntegral(*ray.transfer, ray.emission)(signal, ray.signal_error);
+}
+
+Json truth_json(const Certified& truth) {
+  if (!is_finite(truth.color, truth.opacity) || !std::isfinite(truth.radius)) return refused(why_not_finite);
+  Json answer{{"color", color_json(truth.color)}, {"opacity", truth.opacity}, {"error_bound", truth.radius}};
+  add_status(answer, truth.status);
+  return answer;
+}
+
+Json difference_json(const Difference& difference) {
+  return {{"color", color_json(difference.color)}, {"opacity", difference.opacity}};
+}
+
+/// What the scheme makes of colour and opacity: in binary64, and in the budget what binary32 adds.
+Json integral_json(const ErrorBudget& budget, const Certified& truth) {
+  const Outcome<>& outcome = budget.outcome;
+  if (!outcome.refusal.empty()) return refused(outcome.refusal);
+  const Difference error{outcome.color - truth.color, outcome.opacity - truth.opacity};
+  if (!is_finite(error.color, error.opacity) || !std::isfinite(budget.radius)) return refused(why_not_finite);
+  Json answer{
+      {"color", color_json(outcome.color)},
+      {"opacity", outcome.opacity},
+      {"color_error", color_json(error.color)},
+      {"opacity_error", error.opacity},
+      {"error_bound", budget.radius},
+      {"budget", {{"signal", difference_json(budget.signal)}, {"quadrature", difference_json(budget.quadrature)}}},
+      {"samples", outcome.fetches},
+      {"lookups", outcome.lookups},
+      {"composites", outcome.composites}};
+  if (budget.round32) answer["budget"]["round32"] = difference_json(*budget.round32);
+  add_status(answer, outcome.status);
+  return answer;
+}
+
+/// How far the scheme's approximate signal is from the signal.
+template <Scheme S, int Degree>
+Json signal_json(const Chain<Degree>& signal, const Samples<double>& samples) {
+  if (const auto why = refusal<S>(samples); !why.empty()) return refused(why);
+  Chain<3> approximation;
+  approximate<S>(signal, samples, approximation);
+  const double length = signal.length();
+  const double error = xi(signal, approximation);
+  const double error_max = xi_max(signal, approximation);
+  Json answer{{"xi", error}, {"xi_per_length", nullptr}, {"xi_max", error_max}, {"xi_max_per_length", nullptr}};
+  if (length > 0) {
+    if (!std::isfinite(error) || !std::isfinite(error / length) || !std::isfinite(error_max / length))
+      return refused(why_not_finite);
+    answer["xi_per_length"] = error / length;
+    answer["xi_max_per_length"] = error_max / length;
+  } else {
+    answer["why"] = "the ray is empty: nothing is per length";
+  }
+  answer["samples"] = fetches<S>(samples);
+  return answer;
+}
+
+/// The schemes of a case, one after the other: what they make of the signal, and of colour and opacity.
+template <int Degree>
+class SchemeAnswers {
+ public:
+  SchemeAnswers(const Case& ray, const Chain<Degree>& signal, const Certified* truth) : signal_(signal), truth_(truth) {
+    ray.json.at("sampling").blame_for([&] { take_samples(signal, ray.sampling, samples_); });
+    if (truth != nullptr) integrate_.emplace(*ray.transfer, ray.emission);
+  }
+
+  Json operator()(const std::string& name) {
+    const IntegralScheme& scheme = *find_named(catalogue::integral_schemes(), name);
+    Json answer = Json::object();
+    if (truth_ != nullptr) answer = integral_json(integrate_->budget(scheme, signal_, samples_, *truth_), *truth_);
+    if (is_refused(answer)) return answer;
+    catalogue::visit_scheme(name, [&]<class S>() {
+      Json of_signal = signal_json<S>(signal_, samples_);
+      if (is_refused(of_signal))
+        answer = std::move(of_signal);
+      else
+        answer.update(of_signal);
+    });
+    return answer.empty() ? refused(why_no_integral) : answer;
+  }
+
+ private:
+  const Chain<Degree>& signal_;
+  const Certified* truth_;  ///< null: there is no transfer function
+  Samples<double> samples_;
+  std::optional<SchemeIntegral> integrate_;
+};
+
+}  // namespace
+
+Case CaseReader::read(const JsonReader& json, std::vector<std::string>& warnings) {
+  json.only({"signal", "transfer_function", "emission", "sampling", "schemes"});
+  const JsonReader signal = json.at("signal");
+  std::vector<std::string_view> kinds(catalogue::signals.size());
+  std::transform(catalogue::signals.begin(), catalogue::signals.end(), kinds.begin(),
+                 [](const Named& entry) { return entry.name; });
+  const std::string kind = signal.at("kind").word(kinds);
+  Case ray{json, read_sampling(json.at("sampling")), read_schemes(json.at("schemes"), scheme_names()), std::nullopt};
+  if (const auto transfer = json.find("transfer_function")) ray.transfer = read_transfer_function(*transfer, warnings);
+  ray.emission = read_emission(json);
+  // It refuses numbers that it cannot calculate with.
+  if (ray.transfer) json.at("transfer_function").blame_for([&] { return RayIntegral(*ray.transfer, ray.emission); });
+  if (kind == "trilinear")
+    read_trilinear(signal, ray, warnings);
+  else if (kind == "tricubic")
+    read_tricubic(signal, ray, warnings);
+  else if (kind == "marschner_lobb")
+    read_marschner_lobb(signal, ray);
+  else if (kind == "analytic")
+    read_analytic(signal, ray);
+  else
+    read_piecewise_polynomial(signal, ray);
+  std::visit([&signal](const auto& chain) { check_values(signal, chain); }, ray.signal);
+  return ray;
+}
+
+void CaseReader::read_trilinear(const JsonReader& json, Case& result, std::vector<std::string>& warnings) {
+  json.only({"kind", "volume", "repair", "origin", "direction", "length"});
+  const Ray ray = read_ray(json);
+  const Grid& grid = read_volume_of(json, warnings);
+  auto chain = json.at("origin").blame_for([&] { return trace_trilinear(grid, ray); });
+  if (result.transfer) result.signal_error = trilinear_error(grid, ray, chain);
+  result.signal = std::move(chain);
+}
+
+void CaseReader::read_tricubic(const JsonReader& json, Case& result, std::vector<std::string>& warnings) {
+  json.only({"kind", "volume", "repair", "origin", "direction", "length", "kernel", "prefilter"});
+  const Ray ray = read_ray(json);
+  const bool is_bspline = json.at("kernel").word({"bspline", "catmull_rom"}) == "bspline";
+  const auto kernel = is_bspline ? CubicKernel::bspline : CubicKernel::catmull_rom;
+  const auto prefilter = json.find("prefilter");
+  const bool is_prefiltered = prefilter && prefilter->boolean();
+  if (is_prefiltered && !is_bspline) prefilter->refuse_value("false: catmull_rom passes through its voxels as it is;");
+  const Grid& voxels = read_volume_of(json, warnings);
+  const Grid coefficients = is_prefiltered ? bspline_coefficients(voxels) : Grid{};
+  const Grid& grid = is_prefiltered ? coefficients : voxels;
+  Chain<largest_degree> chain;
+  json.at("origin").blame_for([&] {
+    trace_tricubic(grid, kernel, ray, chain);
+    return 0;
+  });
+  if (result.transfer)
+    result.signal_error =
+        tricubic_error(grid, kernel, ray, chain, is_prefiltered ? prefilter_error(voxels, grid) : 0.0);
+  result.signal = std::move(chain);
+}
+
+const Grid& CaseReader::read_volume_of(const JsonReader& signal, std::vector<std::string>& warnings) {
+  const JsonReader volume = signal.at("volume");
+  if (volume.is_object()) {
+    if (const auto repair = signal.find("repair")) repair->refuse_value("a repair of a file only");
+    last_volume_.clear();
+    grid_ = read_inline_grid(volume);
+    return grid_;
+  }
+  const auto file = volume.blame_for([&] { return find_sourced_volume(signal, folders_); });
+  const std::string which = file.string() + (asks_for_repair(signal) ? " repaired" : "");
+  if (which == last_volume_) return grid_;
+  SourcedVolume read = read_sourced_volume(signal, folders_);
+  warnings.insert(warnings.end(), read.warnings.begin(), read.warnings.end());
+  grid_ = std::move(read.grid);
+  last_volume_ = which;
+  return grid_;
+}
+
+Json evaluate(const Case& ray) {
+  return std::visit(
+      [&ray](const auto& signal) -> Json {
+        std::optional<Certified> truth;
+        if (ray.transfer) truth = truth_of(ray, signal);
+        SchemeAnswers answer_of(ray, signal, truth ? &*truth : nullptr);
+        Json schemes = Json::object();
+        for (const std::string& scheme : ray.schemes)
+          if (scheme != "reference") schemes[scheme] = answer_of(scheme);
+        return {{"length", signal.length()},
+                {"reference", truth ? truth_json(*truth) : refused(why_no_integral)},
+                {"schemes", std::move(schemes)}};
+      },
+      ray.signal);
+}
+
+}  // namespace raytruth

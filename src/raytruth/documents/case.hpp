@@ -1,0 +1,57 @@
+#pragma once
+
+#include "raytruth/core/chain.hpp"
+#include "raytruth/documents/json/json_reader.hpp"
+#include "raytruth/reference/arb_integral.hpp"
+#include "raytruth/schemes/sampling.hpp"
+#include "raytruth/signals/analytic.hpp"
+#include "raytruth/signals/piecewise_polynomial.hpp"
+#include "raytruth/signals/signal_error_bound.hpp"
+#include "raytruth/transfer/emission.hpp"
+#include "raytruth/transfer/piecewise_linear.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace raytruth {
+
+/// A ray for `eval`; experiments/schemas/case.json describes its JSON.
+struct Case {
+  JsonReader json;
+  Sampling sampling;
+  std::vector<std::string> schemes;  ///< of the catalogue, or "reference"
+  std::optional<PiecewiseLinear> transfer;
+  Emission emission = Emission::associated;
+  std::variant<Chain<3>, Chain<largest_degree>> signal = {};
+  SignalError signal_error = {};                                                ///< of the chain
+  std::variant<std::monostate, MarschnerLobbRay, AnalyticSignal> formula = {};  ///< that the chain only approximates
+};
+
+/// Reads cases one after the other; keeps the volume that was read last, for the cases of a list often share it.
+class CaseReader {
+ public:
+  explicit CaseReader(std::vector<std::filesystem::path> folders) : folders_(std::move(folders)) {}
+
+  /// Adds a line to `warnings` where an opacity is clamped or a volume looks damaged. Throws InputError.
+  Case read(const JsonReader& json, std::vector<std::string>& warnings);
+
+ private:
+  void read_trilinear(const JsonReader& json, Case& result, std::vector<std::string>& warnings);
+  void read_tricubic(const JsonReader& json, Case& result, std::vector<std::string>& warnings);
+  const Grid& read_volume_of(const JsonReader& signal, std::vector<std::string>& warnings);
+
+  std::vector<std::filesystem::path> folders_;
+  std::string last_volume_;  ///< which one it is; empty: none
+  Grid grid_;
+};
+
+/// What `eval` answers. Throws InputError for more than 10^7 samples.
+nlohmann::ordered_json evaluate(const Case& ray);
+
+}  // namespace raytruth

@@ -1,0 +1,52 @@
+#include "raytruth/documents/case_json.hpp"
+#include "raytruth/core/named.hpp"
+
+#include <algorithm>
+
+namespace raytruth {
+
+Vector3<double> read_vector(const JsonReader& json) {
+  const auto numbers = json.numbers(3);
+  if (numbers.size() != 3) json.refuse_value("a list of 3 numbers");
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+Emission read_emission(const JsonReader& json) {
+  const auto emission = json.find("emission");
+  return emission && emission->word({"associated", "plain"}) == "plain" ? Emission::plain : Emission::associated;
+}
+
+std::vector<std::string> read_schemes(const JsonReader& json, const std::vector<std::string_view>& names) {
+  std::vector<std::string_view> allowed{"reference"};
+  allowed.insert(allowed.end(), names.begin(), names.end());
+  std::vector<std::string> schemes;
+  for (const JsonReader& item : json.items()) {
+    const std::string scheme = item.word(allowed);
+    if (std::find(schemes.begin(), schemes.end(), scheme) != schemes.end()) item.refuse_value("each scheme once");
+    schemes.push_back(scheme);
+  }
+  return schemes;
+}
+
+nlohmann::ordered_json color_json(const Vector3<double>& color) { return {color[0], color[1], color[2]}; }
+
+nlohmann::ordered_json refused(std::string_view why) { return {{"status", "refused"}, {"why", why}}; }
+
+void add_status(nlohmann::ordered_json& answer, Status status) {
+  if (status == Status::converged) return;
+  answer["status"] = "not_converged";
+  answer["why"] = "error_bound holds, but is wider than is asked for";
+}
+
+Sampling read_sampling(const JsonReader& json) {
+  Sampling sampling{json.at("kind").word(names_of(catalogue::samplings)), {}};
+  if (sampling.kind == "constant") {
+    json.only({"kind", "step"});
+    sampling.step = json.at("step").positive_number();
+  } else {
+    json.only({"kind"});
+  }
+  return sampling;
+}
+
+}  // namespace raytruth

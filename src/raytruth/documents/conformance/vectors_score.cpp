@@ -1,0 +1,138 @@
+#include "raytruth/documents/conformance/vectors_score.hpp"
+
+#include "raytruth/core/error.hpp"
+#include "raytruth/core/one_line.hpp"
+#include "raytruth/documents/json/input.hpp"
+#include "raytruth/statistics/statistics.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <boost/algorithm/string/trim.hpp>
+#include <boost/tokenizer.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+#include <string_view>
+
+namespace raytruth {
+
+namespace {
+
+constexpr double unit_roundoff = 0x1p-53;
+constexpr std::array<std::string_view, 5> header{"id", "r", "g", "b", "opacity"};
+
+double digits_of(double error, double scale, double radius) {
+  if (!(scale > 0)) return error <= radius ? -std::log10(unit_roundoff) : 0;
+  return std::max(0.0, -std::log10(std::max({error, radius, unit_roundoff * scale}) / scale));
+}
+
+LevelScore score_level(std::string level, const std::vector<const ScoredVector*>& vectors) {
+  std::vector<double> digits;
+  for (const ScoredVector* vector : vectors)
+    digits.push_back(vector->answer ? digits_correct(*vector->answer, vector->truth) : 0);
+  const auto worst = std::min_element(digits.begin(), digits.end()) - digits.begin();
+  const auto answered = std::count_if(vectors.begin(), vectors.end(),
+                                      [](const ScoredVector* vector) { return vector->answer.has_value(); });
+  std::vector<double> sorted = digits;
+  std::sort(sorted.begin(), sorted.end());
+  return {.level = std::move(level),
+          .cases = static_cast<std::int64_t>(vectors.size()),
+          .answered = answered,
+          .digits_min = sorted.front(),
+          .digits_median = quantile(sorted, 0.5),
+          .worst = vectors[static_cast<std::size_t>(worst)]->id};
+}
+
+/// A line of the answers, and where it stands.
+struct Line {
+  std::string place;
+  std::string text;
+
+  [[noreturn]] void refuse(std::string_view found, std::string_view allowed) const {
+    throw InputError(one_line(fmt::format("{}: found {}; {} is allowed", place, found, allowed)));
+  }
+
+  [[nodiscard]] std::vector<std::string> fields() const {
+    std::vector<std::string> fields;
+    try {
+      // A backslash means nothing in RFC 4180; the escape character is one that no id and no number has.
+      const boost::tokenizer tokens(text, boost::escaped_list_separator<char>('\x1b', ',', '"'));
+      for (const std::string& token : tokens) fields.push_back(boost::trim_copy(token));
+    } catch (const boost::escaped_list_error&) {
+      refuse("an escape character", "text");
+    }
+    if (fields.size() != header.size())
+      refuse(fmt::format("{} fields", fields.size()), fmt::format("{}", fmt::join(header, ",")));
+    return fields;
+  }
+
+  [[nodiscard]] double number(std::string_view name, const std::string& field) const {
+    double value = 0;
+    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+    if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value))
+      refuse(fmt::format("{} '{}'", name, shortened(field)), "a finite number");
+    return value;
+  }
+};
+
+/// The lines that are not blank.
+std::vector<Line> lines_of(const std::string& path) {
+  std::istringstream text(read_text(path, "a readable CSV file"));
+  std::vector<Line> lines;
+  std::string line;
+  for (int number = 1; std::getline(text, line); ++number)
+    if (!boost::trim_copy(line).empty()) lines.push_back({fmt::format("{}: line {}", input_name(path), number), line});
+  if (lines.empty())
+    throw InputError(
+        fmt::format("{}: found no lines; a header {} is allowed", input_name(path), fmt::join(header, ",")));
+  return lines;
+}
+
+}  // namespace
+
+double digits_correct(const Answer& answer, const Certified& truth) {
+  const double color_error = (answer.color - truth.color).abs().maxCoeff();
+  const double opacity_error = std::abs(answer.opacity - truth.opacity);
+  return std::min(digits_of(color_error, truth.color.maxCoeff(), truth.radius),
+                  digits_of(opacity_error, truth.opacity, truth.radius));
+}
+
+std::vector<LevelScore> score(const std::vector<ScoredVector>& vectors) {
+  std::vector<std::string> names;
+  std::map<std::string, std::vector<const ScoredVector*>> by_level;
+  std::vector<const ScoredVector*> all;
+  for (const ScoredVector& vector : vectors) {
+    auto& level = by_level[vector.level];
+    if (level.empty()) names.push_back(vector.level);
+    level.push_back(&vector);
+    all.push_back(&vector);
+  }
+  std::vector<LevelScore> scores;
+  for (const std::string& name : names) scores.push_back(score_level(name, by_level[name]));
+  scores.push_back(score_level("all", all));
+  return scores;
+}
+
+std::map<std::string, Answer> read_answers(const std::string& path) {
+  const std::vector<Line> lines = lines_of(path);
+  if (!std::equal(header.begin(), header.end(), lines.front().fields().begin()))
+    lines.front().refuse(fmt::format("'{}'", shortened(boost::trim_copy(lines.front().text))),
+                         fmt::format("the header {}", fmt::join(header, ",")));
+  std::map<std::string, Answer> answers;
+  std::for_each(lines.begin() + 1, lines.end(), [&answers](const Line& line) {
+    const auto fields = line.fields();
+    if (fields[0].empty()) line.refuse("no id", "the id of a vector");
+    std::array<double, 4> numbers{};
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = line.number(header[i + 1], fields[i + 1]);
+    const Answer answer{{numbers[0], numbers[1], numbers[2]}, numbers[3]};
+    if (!answers.emplace(fields[0], answer).second)
+      line.refuse(fmt::format("a second answer for '{}'", shortened(fields[0])), "one answer for each id");
+  });
+  return answers;
+}
+
+}  // namespace raytruth

@@ -1,0 +1,272 @@
+#include "raytruth/documents/scene_document.hpp"
+
+#include "raytruth/catalogue.hpp"
+#include "raytruth/core/named.hpp"
+#include "raytruth/documents/case_json.hpp"
+#include "raytruth/documents/read_transfer_function.hpp"
+#include "raytruth/documents/transfer_files/transfer_file.hpp"
+#include "raytruth/documents/volume_source.hpp"
+#include "raytruth/reference/ray_integral.hpp"
+#include "raytruth/signals/marschner_lobb.hpp"
+#include "raytruth/signals/random_field.hpp"
+#include "raytruth/tables/table3.hpp"
+#include "raytruth/volume/files/find_volume.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+namespace raytruth {
+
+namespace {
+
+constexpr std::int64_t largest_generated_size = 512;
+constexpr std::int64_t most_table_iterations = 4096;
+constexpr std::int64_t most_pixels = std::int64_t{1} << 28;
+
+template <class Names>
+std::vector<std::string_view> words(const Names& names) {
+  return {names.begin(), names.end()};
+}
+
+/// The value of an enumeration whose names stand in a list.
+template <class Enumeration, class Names>
+Enumeration read_word(const JsonReader& json, const Names& names) {
+  const std::string word = json.word(words(names));
+  return static_cast<Enumeration>(std::find(names.begin(), names.end(), word) - names.begin());
+}
+
+std::array<double, 3> read_place(const JsonReader& json) {
+  const Vector3<double> vector = read_vector(json);
+  return {vector[0], vector[1], vector[2]};
+}
+
+Grid read_generated(const JsonReader& json) {
+  if (json.at("kind").word({"random_field", "marschner_lobb"}) == "random_field") {
+    json.only({"kind", "size", "smoothing", "seed"});
+    const auto size = json.at("size").integer(1, largest_generated_size);
+    const auto smoothing = json.find("smoothing");
+    const auto seed = json.find("seed");
+    return random_field(
+        size, smoothing ? smoothing->number(0, static_cast<double>(size)) : 0,
+        static_cast<std::uint64_t>(seed ? seed->integer(0, std::numeric_limits<std::int64_t>::max()) : 1));
+  }
+  json.only({"kind", "samples"});
+  return sampled_marschner_lobb(json.at("samples").integer(2, largest_generated_size));
+}
+
+/// The voxels, and where they come from.
+Grid read_voxels(const JsonReader& json, const SceneOptions& options, SceneFile& result) {
+  const JsonReader place = json.at("volume");
+  const auto repair = json.find("repair");
+  if (place.is_object()) {
+    if (repair) repair->refuse_value("a repair of a file only");
+    result.volume = place.find("kind") ? place.json() : nlohmann::ordered_json("inline");
+    return place.find("kind") ? read_generated(place) : read_inline_grid(place, true);
+  }
+  SourcedVolume read = place.blame_for([&] { return read_sourced_volume(json, options.folders); });
+  result.volume = read.file;
+  result.warnings = std::move(read.warnings);
+  return std::move(read.grid);
+}
+
+FileTransfer read_file_transfer(const JsonReader& json, const SceneOptions& options, const Grid& grid,
+                                std::vector<std::string>& warnings) {
+  TransferFileRequest request{.ignores_gradient_opacity = options.ignores_gradient_opacity};
+  if (json.is_string()) {
+    request.file = json.resolve(json.text());
+  } else {
+    json.only({"file", "preset", "opacity", "range", "unit_length", "ignore_gradient_opacity"});
+    request.file = json.resolve(json.at("file").text());
+    if (const auto preset = json.find("preset")) request.preset = preset->text();
+    if (const auto opacity = json.find("opacity")) request.opacity = json.resolve(opacity->text());
+    if (const auto unit_length = json.find("unit_length")) request.unit_length = unit_length->positive_number();
+    if (const auto ignore = json.find("ignore_gradient_opacity"); ignore && ignore->boolean())
+      request.ignores_gradient_opacity = true;
+    if (const auto range = json.find("range")) {
+      const auto ends = range->numbers(2);
+      if (ends.size() != 2 || !(ends[0] < ends[1])) range->refuse_value("a pair of ascending numbers");
+      request.range = {{ends[0], ends[1]}};
+    }
+  }
+  if (options.opacity) request.opacity = *options.opacity;
+  return json.blame_for([&] { return read_transfer_file(request, grid, warnings); });
+}
+
+/// Whether a path names a file of this program's own: JSON with "points".
+bool is_own_file(const JsonReader& json) {
+  if (!json.is_string() || std::filesystem::path(json.text()).extension() != ".json") return false;
+  const auto document = json.blame_for([&] { return JsonReader::from_file(json.resolve(json.text()).string()); });
+  return document.is_object() && document.find("points");
+}
+
+PiecewiseLinear read_transfer(const JsonReader& json, const SceneOptions& options, SceneFile& result,
+                              const Grid& grid) {
+  const bool has_points = json.is_object() && json.find("points");
+  if (!has_points && (json.is_string() || json.is_object()) && !is_own_file(json)) {
+    FileTransfer read = read_file_transfer(json, options, grid, result.warnings);
+    result.transfer_function = std::move(read.description);
+    return std::move(read.transfer);
+  }
+  if (options.opacity)
+    json.refuse("points with an opacity of their own", "another program's file together with --opacity");
+  PiecewiseLinear transfer = read_transfer_function(json, result.warnings);
+  result.transfer_function = {{"points", transfer.points().size()}, {"color", "linear light"}};
+  return transfer;
+}
+
+Camera read_camera(const JsonReader& json, const Grid& grid) {
+  json.only({"eye", "target", "up", "height", "fov_y", "size"});
+  Camera camera{
+      .eye = read_place(json.at("eye")), .target = read_place(json.at("target")), .up = read_place(json.at("up"))};
+  const auto height = json.find("height");
+  const auto angle = json.find("fov_y");
+  if (height && angle) angle->refuse_value("either height or fov_y");
+  if (angle)
+    camera.projection = Perspective{angle->positive_number()};
+  else
+    camera.projection = Orthographic{json.at("height").positive_number()};
+  const auto size = json.at("size").items(2);
+  if (size.size() != 2) json.at("size").refuse_value("a list of width and height");
+  for (std::size_t axis = 0; axis < 2; ++axis) camera.size[axis] = size[axis].integer(1, largest_image_side);
+  if (camera.size[0] * camera.size[1] > most_pixels) json.at("size").refuse("more than 2^28 pixels", "fewer");
+  json.blame_for([&] { return CameraView(camera, grid.spacing); });
+  return camera;
+}
+
+SceneTable read_table(const JsonReader& json, const std::string& scheme) {
+  if (scheme != "order1" && scheme != "order2")
+    json.refuse(fmt::format("a table with the scheme {}", scheme), "one with the scheme order1 or order2");
+  const bool is_second_order = scheme == "order2";
+  std::vector<std::string_view> names = words(second_order_builder_names);
+  if (!is_second_order) {
+    names.clear();
+    for (const TableBuilder& row : catalogue::table_builders()) names.push_back(row.name);
+  }
+  SceneTable table;
+  if (is_second_order) table.builder = second_order_builder_names[0];
+  if (const auto builder = json.find("builder")) table.builder = builder->word(names);
+  if (table.builder == second_order_builder_names[2]) {
+    json.only({"builder", "iterations", "size", "format", "filter"});
+    table.iterations = static_cast<int>(json.at("iterations").integer(1, most_table_iterations));
+  } else {
+    json.only({"builder", "size", "format", "filter"});
+  }
+  const std::size_t largest = is_second_order ? largest_table3_size : largest_table_size;
+  table.size = static_cast<std::size_t>(json.at("size").integer(2, static_cast<std::int64_t>(largest)));
+  if (const auto format = json.find("format")) {
+    std::vector<std::string_view> names;
+    for (const TableFormat& row : table_formats) names.push_back(row.name);
+    const std::string name = format->word(names);
+    table.format = *std::find_if(table_formats.begin(), table_formats.end(),
+                                 [&](const TableFormat& row) { return row.name == name; });
+  }
+  if (const auto filter = json.find("filter")) table.filter = read_word<TableFilter>(*filter, table_filter_names);
+  return table;
+}
+
+EmptySpace read_empty_space(const JsonReader& json) {
+  json.only({"block", "bounds"});
+  EmptySpace empty;
+  if (const auto block = json.find("block")) empty.block = block->integer(1, 1024);
+  empty.bounds = read_word<BlockBounds>(json.at("bounds"), block_bounds_names);
+  return empty;
+}
+
+double read_share(const JsonReader& json) { return json.number(0, 1); }
+
+/// A colour, three numbers >= 0.
+Vector3<double> read_tone(const JsonReader& json) {
+  Vector3<double> tone = read_vector(json);
+  if (!(tone >= 0).all()) json.refuse_value("a list of three numbers >= 0");
+  return tone;
+}
+
+Gooch read_gooch(const JsonReader& json) {
+  json.only({"cool", "warm", "cool_share", "warm_share", "diffuse"});
+  Gooch gooch;
+  if (const auto cool = json.find("cool")) gooch.cool = read_tone(*cool);
+  if (const auto warm = json.find("warm")) gooch.warm = read_tone(*warm);
+  if (const auto share = json.find("cool_share")) gooch.cool_share = read_share(*share);
+  if (const auto share = json.find("warm_share")) gooch.warm_share = read_share(*share);
+  if (const auto diffuse = json.find("diffuse")) gooch.diffuse = diffuse->number(0);
+  return gooch;
+}
+
+/// Ambient, diffuse and specular light.
+void read_lighting(const JsonReader& json, Lighting& lighting) {
+  lighting.ambient = json.at("ambient").number(0);
+  lighting.diffuse = json.at("diffuse").number(0);
+  lighting.specular = json.at("specular").number(0);
+  lighting.shininess = json.at("shininess").number(1, largest_shininess);
+  if (const auto highlight = json.find("highlight")) {
+    std::vector<std::string_view> names;
+    for (const Highlight& row : catalogue::highlights()) names.push_back(row.name);
+    lighting.highlight = find_named(catalogue::highlights(), highlight->word(names));
+  }
+  constexpr std::array<std::string_view, 3> treatments{"clamp", "mirror", "none"};
+  if (const auto negative = json.find("negative")) lighting.negative = read_word<Negative>(*negative, treatments);
+  json.at("shininess").blame_for([&lighting] {
+    check(lighting);
+    return 0;
+  });
+}
+
+/// Light and normals; half vectors are the pixels' own.
+SceneShading read_shading(const JsonReader& json) {
+  SceneShading shading;
+  std::vector<std::string_view> methods{"pointwise"};
+  for (const Shading& row : catalogue::shadings()) methods.push_back(row.name);
+  // "pointwise" is in no list: it has no slabs.
+  if (const auto method = json.find("method"))
+    shading.method = find_named(catalogue::shadings(), method->word(methods));
+  const Vector3<double> light = read_vector(json.at("light"));
+  const double norm = light.matrix().stableNorm();
+  if (!(norm > 0) || !std::isfinite(norm)) json.at("light").refuse_value("a direction");
+  shading.lighting.light = light / norm;
+  if (const auto gooch = json.find("gooch")) {
+    json.only({"method", "light", "gooch", "normal"});
+    shading.gooch = read_gooch(*gooch);
+  } else {
+    json.only({"method", "light", "ambient", "diffuse", "specular", "shininess", "highlight", "negative", "normal"});
+    read_lighting(json, shading.lighting);
+  }
+  if (const auto normal = json.find("normal"))
+    shading.is_along_gradient = normal->word({"minus_gradient", "gradient"}) == "gradient";
+  return shading;
+}
+
+std::string read_scheme(const JsonReader& json) {
+  std::vector<std::string_view> names{"reference"};
+  for (const IntegralScheme& scheme : catalogue::integral_schemes()) names.push_back(scheme.name);
+  return json.word(names);
+}
+
+}  // namespace
+
+SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
+  json.only({"volume", "repair", "reconstruction", "transfer_function", "emission", "camera", "scheme", "step",
+             "shading", "table", "early_termination", "empty_space"});
+  const std::string scheme = read_scheme(json.at("scheme"));
+  SceneFile result{.scene = {.transfer = PiecewiseLinear(std::vector<TransferPoint>(1)), .scheme = scheme}};
+  Scene& scene = result.scene;
+  if (const auto kind = json.find("reconstruction")) scene.field = read_word<FieldKind>(*kind, field_kind_names);
+  scene.emission = read_emission(json);
+  if (const auto step = json.find("step")) scene.step = step->positive_number();
+  if (const auto table = json.find("table")) scene.table = read_table(*table, scheme);
+  if (const auto shading = json.find("shading")) scene.shading = read_shading(*shading);
+  if (const auto opaque = json.find("early_termination")) scene.opaque = opaque->number(0, 1);
+  if (const auto empty = json.find("empty_space")) scene.empty_space = read_empty_space(*empty);
+  scene.grid = read_voxels(json, options, result);
+  scene.camera = read_camera(json.at("camera"), scene.grid);
+  const JsonReader transfer = json.at("transfer_function");
+  scene.transfer = read_transfer(transfer, options, result, scene.grid);
+  // It refuses numbers that it cannot calculate with.
+  transfer.blame_for([&] { return RayIntegral(scene.transfer, scene.emission); });
+  return result;
+}
+
+}  // namespace raytruth

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "raytruth/documents/json/json_reader.hpp"
+#include "raytruth/render/scene.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace raytruth {
+
+/// What the command line adds to a scene's transfer function.
+struct SceneOptions {
+  std::vector<std::filesystem::path> folders;  ///< of volumes
+  std::optional<std::string> opacity;          ///< file
+  bool ignores_gradient_opacity = false;
+};
+
+/// A scene as its JSON says it; experiments/schemas/scene.json describes it.
+struct SceneFile {
+  Scene scene;
+  nlohmann::ordered_json volume = {};             ///< where it comes from
+  nlohmann::ordered_json transfer_function = {};  ///< how it was understood
+  std::vector<std::string> warnings = {};         ///< one line each
+};
+
+/// Throws InputError.
+SceneFile read_scene(const JsonReader& json, const SceneOptions& options);
+
+}  // namespace raytruth

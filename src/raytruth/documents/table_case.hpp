@@ -1,0 +1,46 @@
+#pragma once
+
+#include "raytruth/documents/json/json_reader.hpp"
+#include "raytruth/tables/look_up.hpp"
+#include "raytruth/tables/second_order.hpp"
+#include "raytruth/tables/table_builder.hpp"
+#include "raytruth/transfer/emission.hpp"
+#include "raytruth/transfer/piecewise_linear.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace raytruth {
+
+/// The table of psi (tables/partial_pre_integration.hpp), which no transfer function takes part in.
+struct PartialPreIntegration {};
+
+/// A case of `raytruth table`; experiments/schemas/table.json describes it.
+struct TableCase {
+  std::variant<const TableBuilder*, SecondOrderMethod, PartialPreIntegration> builder;
+  std::optional<PiecewiseLinear> transfer;  ///< none: partial pre-integration needs none
+  Emission emission = Emission::associated;
+  TableAxes axes;
+  TableFormat format;
+  JsonReader json;
+};
+
+/// Adds a line to `warnings` where an opacity is clamped. Throws InputError.
+TableCase read_table_case(const JsonReader& json, std::vector<std::string>& warnings);
+
+/// A table's numbers in C order, and what is known of it.
+struct MadeTable {
+  std::vector<std::size_t> shape;
+  std::vector<double> values;    ///< not rounded to the format yet
+  nlohmann::ordered_json axes;   ///< what each of them means
+  nlohmann::ordered_json error;  ///< of look-ups in the format's numbers, against proven values
+};
+
+MadeTable make_table(const TableCase& asked);
+
+}  // namespace raytruth

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "raytruth/core/chain.hpp"
+#include "raytruth/reference/arb/arb_numbers.hpp"
+#include "raytruth/signals/analytic.hpp"
+#include "raytruth/signals/marschner_lobb.hpp"
+
+#include <vector>
+
+namespace raytruth::arb {
+
+/// A stretch of a ray on which a polynomial in x on [0, 1] encloses the signal: t = start + length x.
+struct Piece {
+  Polynomial signal;
+  std::vector<Ball> control;  ///< its Bernstein coefficients
+  Ball length;
+  Ball end = 1.0;  ///< where in x the next piece starts: 1, but for the rounding of a chain's lengths
+};
+
+/// The pieces of a signal in their order; see `arb_integral`.
+template <int Degree>
+std::vector<Piece> pieces_of(const Chain<Degree>& chain);
+std::vector<Piece> pieces_of(const MarschnerLobbRay& signal);
+std::vector<Piece> pieces_of(const AnalyticSignal& signal);
+
+}  // namespace raytruth::arb

@@ -1,0 +1,80 @@
+#pragma once
+
+#include "raytruth/core/vector3.hpp"
+#include "raytruth/reference/arb/arb_pieces.hpp"
+#include "raytruth/transfer/gaussian_transfer.hpp"
+#include "raytruth/transfer/piecewise_linear.hpp"
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace raytruth::arb {
+
+using Color = std::array<Ball, 3>;
+
+/// A stretch of a ray on which polynomials in x on [0, 1] enclose what the transfer function says of the signal: the
+/// extinction, and the colour as color + weight * color_change.
+struct Stretch {
+  Ball length;
+  Polynomial extinction;
+  Polynomial weight;
+  Color color;
+  Color color_change;
+};
+
+using Visit = std::function<void(const Stretch&)>;
+
+/// A piecewise linear transfer function. A piece is cut where its signal meets the points: the crossings are isolated
+/// by halving until the signal is monotone, then by Newton's method on intervals. A crossing lies somewhere in a gap of
+/// some 2^-100 of the piece, and so does a contact that no arithmetic can decide in some 2^-60: on those stretches all
+/// values of the transfer function that the signal may meet are enclosed by one ball.
+class PointsCut {
+ public:
+  explicit PointsCut(const PiecewiseLinear& transfer);
+
+  void operator()(const Piece& piece, const Visit& visit) const;
+  [[nodiscard]] Ball largest_color(const Ball& largest_signal) const;
+
+ private:
+  /// Linear from `begin` to `end`; both values are alike on the half-lines beyond the points.
+  struct Interval {
+    Optics begin;
+    Optics end;
+  };
+  /// x from begin to end; without an interval: it may be any that the signal meets.
+  struct Part {
+    Ball begin;
+    Ball end;
+    std::optional<std::size_t> interval;
+  };
+
+  [[nodiscard]] std::size_t points_below(const Ball& s) const;
+  [[nodiscard]] std::optional<std::size_t> common_interval(const std::vector<Ball>& control) const;
+  void find_parts(const Piece& piece, const Ball& begin, const Ball& end, const std::vector<Ball>& control,
+                  std::vector<Part>& parts) const;
+  void cut_monotone(const Piece& piece, const Ball& begin, const Ball& end, const Ball& first, const Ball& last,
+                    std::vector<Part>& parts) const;
+  [[nodiscard]] Stretch stretch_in(std::size_t interval, const Piece& piece, const Ball& begin, const Ball& end) const;
+  [[nodiscard]] Stretch stretch_across(const Piece& piece, const Ball& begin, const Ball& end) const;
+
+  std::vector<double> points_;       ///< ascending, each once
+  std::vector<Interval> intervals_;  ///< interval i ends at point i
+};
+
+/// A Gaussian transfer function: Taylor's polynomials of the extinction.
+class GaussianCut {
+ public:
+  explicit GaussianCut(const GaussianTransfer& transfer);
+
+  void operator()(const Piece& piece, const Visit& visit) const { cut(piece, 0.0, piece.end, visit); }
+  [[nodiscard]] Ball largest_color(const Ball& largest_signal) const;
+
+ private:
+  void cut(const Piece& piece, const Ball& begin, const Ball& end, const Visit& visit) const;
+
+  GaussianTransfer transfer_;
+};
+
+}  // namespace raytruth::arb

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "raytruth/images/image.hpp"
+#include "raytruth/signals/ray.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstdint>
+#include <variant>
+
+namespace raytruth {
+
+/// Parallel rays through an image of this height in world units.
+struct Orthographic {
+  double height = 1;
+};
+
+/// Rays from one point, the vertical angle of view being `fov_y` degrees.
+struct Perspective {
+  double fov_y = 45;
+};
+
+/// Who looks at a volume, in world coordinates: voxel times spacing.
+struct Camera {
+  std::array<double, 3> eye{};
+  std::array<double, 3> target{};
+  std::array<double, 3> up{};
+  std::variant<Orthographic, Perspective> projection = {};
+  std::array<std::int64_t, 2> size{};  ///< width and height in pixels
+};
+
+/// What a pixel sees.
+struct PixelRay {
+  Ray ray;                 ///< in voxel coordinates; begins at the eye, or on the plane through it across the view
+  double length_unit = 1;  ///< of one t of the ray, in smallest spacings: the unit of steps and of extinctions' lengths
+};
+
+/// From pixels to rays. With f, r, u the unit vectors forward, right and up, a the image's width over its height, and h
+/// half its height (orthographic) or tan(fov_y / 2) (perspective), the pixel's centre has
+///     x = a h (2 (column + 1/2) / width - 1),  y = h (1 - 2 (row + 1/2) / height),
+/// row 0 being the topmost; its ray is
+///     eye + x r + y u + t f   (orthographic)   or   eye + t (f + x r + y u)   (perspective).
+class CameraView {
+ public:
+  /// Throws InputError unless eye, target and up are finite and span a plane, 0 < height, 0 < fov_y < 180, all
+  /// spacings are positive, and the image has 1 to `largest_image_side` pixels along each side.
+  CameraView(const Camera& camera, const std::array<double, 3>& spacing);
+
+  [[nodiscard]] PixelRay operator()(std::int64_t column, std::int64_t row) const;
+
+ private:
+  bool is_perspective_;
+  std::array<std::int64_t, 2> size_;
+  Eigen::Array3d spacing_;
+  Eigen::Vector3d eye_;
+  Eigen::Vector3d forward_;
+  Eigen::Vector3d to_right_;  ///< from the image's centre to the middle of its right border
+  Eigen::Vector3d to_top_;    ///< and to that of its upper border
+};
+
+}  // namespace raytruth

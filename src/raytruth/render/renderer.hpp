@@ -1,0 +1,49 @@
+#pragma once
+
+#include "raytruth/images/image.hpp"
+#include "raytruth/render/scene.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace raytruth {
+
+/// What a renderer makes of a scene.
+struct Rendering {
+  Image image;
+  /// Of `reference`, in every pixel: a proven bound on the error of each channel and of the opacity if `is_certified`,
+  /// else the measured one, by how much two quadratures differ (LitIntegral). Of other schemes empty.
+  std::vector<double> radii = {};
+  bool is_certified = false;
+  std::int64_t not_converged = 0;  ///< pixels whose radius is wider than was asked for; it holds
+};
+
+/// Makes images of a scene: prepares it once, renders on all cores, the same bytes on any number of them.
+///
+/// Schemes see the exact polynomials along the ray, sampled as the scene says. `reference` is the certified integral
+/// for the pixel's ray and length unit as rounded to binary64; with shading it is converged, not certified (ShadedRay).
+/// It neither skips space nor ends early. Two schemes without shading have
+/// a way of their own through a trilinear grid: `order1` with a table and equal steps, in binary32 (TableMarch); and
+/// `cell_cubic` (CellMarch).
+class Renderer {
+ public:
+  /// Throws InputError for what the scene cannot be rendered with, with what is wrong but without a place.
+  explicit Renderer(Scene scene);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+  Renderer(Renderer&&) = delete;
+  Renderer& operator=(Renderer&&) = delete;
+
+  /// Calls `progress(done, of)` after some tiles, by one thread at a time. Throws InputError for too many samples.
+  [[nodiscard]] Rendering render(const std::function<void(std::size_t, std::size_t)>& progress = {}) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<const Parts> parts_;
+};
+
+}  // namespace raytruth

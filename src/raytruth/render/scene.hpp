@@ -1,0 +1,73 @@
+#pragma once
+
+#include "raytruth/render/camera.hpp"
+#include "raytruth/shading/gooch.hpp"
+#include "raytruth/shading/lighting.hpp"
+#include "raytruth/shading/slab_shading.hpp"
+#include "raytruth/signals/field_kind.hpp"
+#include "raytruth/skipping/occupied_blocks.hpp"
+#include "raytruth/tables/look_up.hpp"
+#include "raytruth/transfer/emission.hpp"
+#include "raytruth/transfer/piecewise_linear.hpp"
+#include "raytruth/volume/grid.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace raytruth {
+
+/// How a table is read between its entries.
+enum class TableFilter { nearest, linear };
+
+inline constexpr std::array<std::string_view, 2> table_filter_names{"nearest", "linear"};
+
+/// Of tables of second order: every entry exactly, by as many steps as Nyquist's theorem asks for, or by `iterations`.
+inline constexpr std::array<std::string_view, 3> second_order_builder_names{
+    "second_order_exact", "second_order_nyquist", "second_order_iterations"};
+
+/// A pre-integration table from which the slabs of `order1`, or `order2`, are read.
+struct SceneTable {
+  std::string builder = "exact";  ///< of catalogue::table_builders, or of second_order_builder_names
+  int iterations = 64;            ///< of second_order_iterations
+  std::size_t size = 256;
+  TableFormat format = table_formats[1];
+  TableFilter filter = TableFilter::linear;
+  bool in_binary64 = false;  ///< also where binary32 is faster
+};
+
+/// Blocks that are skipped where their min-max ranges are clear.
+struct EmptySpace {
+  std::int64_t block = 8;
+  BlockBounds bounds = BlockBounds::corrected;
+};
+
+/// How a scene is lit.
+struct SceneShading {
+  const Shading* method = nullptr;  ///< of catalogue::shadings(): the light inside a slab from the normals at its ends;
+                                    ///< null: every point has its own normal
+  Lighting lighting = {};  ///< `light` points to the light, in world coordinates; `half` is made for every pixel
+  std::optional<Gooch> gooch = {};  ///< instead of ambient, diffuse and specular light
+  bool is_along_gradient = false;   ///< whether normals are +grad s / |grad s|, not -grad s / |grad s|
+};
+
+/// An image to be made. Lengths are in smallest spacings of the grid: extinctions are per such a length, steps so long.
+struct Scene {
+  Grid grid = {};
+  FieldKind field = FieldKind::trilinear;
+  PiecewiseLinear transfer;
+  Emission emission = Emission::associated;
+  Camera camera = {};
+  std::string scheme = "reference";  ///< this, or one of catalogue::integral_schemes
+  std::optional<double> step = {};   ///< of samples; none: at cells' borders and midpoints
+  std::optional<SceneTable> table = {};
+  std::optional<SceneShading> shading = {};
+  double opaque = std::numeric_limits<double>::infinity();  ///< rays end where their opacity reaches this
+  std::optional<EmptySpace> empty_space = {};
+};
+
+}  // namespace raytruth

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "raytruth/core/named.hpp"
+
+#include <array>
+
+namespace raytruth::catalogue {
+
+/// What the scalar along a ray can be.
+inline constexpr std::array signals{
+    Named{"piecewise_polynomial", "given coefficients, degree up to 9"},
+    Named{"trilinear", "a ray through a voxel grid, trilinear reconstruction: an exact chain of cubics"},
+    Named{"tricubic", "a ray through a voxel grid, B-spline (prefiltered or not) or Catmull-Rom: exact, degree 9"},
+    Named{"marschner_lobb", "the Marschner-Lobb signal itself along a ray through [-1, 1]^3"},
+    Named{"analytic", "a test signal with a name: sines, Gaussians, a chirp, a step, a kink"},
+};
+
+/// Where voxels come from.
+inline constexpr std::array fields{
+    Named{"random_field", "white noise in [0, 1], or white noise smoothed by a Gaussian; 64^3, periodic, from a seed"},
+    Named{"marschner_lobb", "the Marschner-Lobb signal sampled at n^3 nodes"},
+    Named{"volume", "a file, NRRD or NIfTI, found by name"},
+};
+
+}  // namespace raytruth::catalogue

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "raytruth/rules/rules.hpp"
+#include "raytruth/tables/table.hpp"
+#include "raytruth/transfer/emission.hpp"
+#include "raytruth/transfer/piecewise_linear.hpp"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace raytruth {
+
+/// A transfer function that is linear between points, cut at a table's scalars: what a slab does between two
+/// neighbouring entries, exactly, for any length. By the certified quadrature of reference/piece_integral.hpp, eight
+/// stretches side by side, so to about 1e-15.
+class IntervalSlabs {
+ public:
+  using vec4 = Rules<double>::vec4;
+
+  IntervalSlabs(const PiecewiseLinear& transfer, const TableAxes& axes, Emission emission);
+
+  /// The slabs of all intervals when each is crossed in `length`, in the order of crossing: from entry 0 up, or
+  /// `backwards` from the last entry down.
+  [[nodiscard]] std::vector<vec4> operator()(double length, bool backwards) const;
+
+ private:
+  /// Part of an interval on which optics are linear, from its lower end to its upper one.
+  struct Stretch {
+    std::size_t interval = 0;
+    double share = 0;  ///< of the interval's width
+    std::array<Optics, 2> ends;
+  };
+
+  std::vector<Stretch> stretches_;
+  std::size_t intervals_;
+  Emission emission_;
+};
+
+}  // namespace raytruth

@@ -1,0 +1,103 @@
+#include "raytruth/tables/table_file.hpp"
+
+#include "raytruth/core/error.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace raytruth {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the bytes of numbers are written as they are");
+
+template <class Number>
+void append(std::string& bytes, Number number) {
+  const auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(number);
+  bytes.append(raw.data(), raw.size());
+}
+
+/// Fixed-point numbers are stored as the integers of which they are multiples.
+void append(std::string& bytes, double value, const TableFormat& format) {
+  const auto level = [value](double levels) { return std::lround(std::clamp(value, 0.0, 1.0) * levels); };
+  if (!format.is_texel) return append(bytes, value);
+  switch (format.type) {
+    case TexelType::unorm8:
+      return append(bytes, static_cast<std::uint8_t>(level(0xFF)));
+    case TexelType::unorm16:
+      return append(bytes, static_cast<std::uint16_t>(level(0xFFFF)));
+    case TexelType::float16:
+      return append(bytes, Eigen::numext::bit_cast<std::uint16_t>(Eigen::half(static_cast<float>(value))));
+    case TexelType::float32:
+      return append(bytes, static_cast<float>(value));
+  }
+}
+
+std::string_view numpy_type(const TableFormat& format) {
+  if (!format.is_texel) return "<f8";
+  switch (format.type) {
+    case TexelType::unorm8:
+      return "|u1";
+    case TexelType::unorm16:
+      return "<u2";
+    case TexelType::float16:
+      return "<f2";
+    case TexelType::float32:
+      break;
+  }
+  return "<f4";
+}
+
+std::string_view nrrd_type(const TableFormat& format) {
+  if (!format.is_texel) return "double";
+  switch (format.type) {
+    case TexelType::unorm8:
+      return "uint8";
+    case TexelType::unorm16:
+      return "uint16";
+    case TexelType::float16:
+      throw InputError(fmt::format("{} in an NRRD file, which has no such numbers; another format, or .npy, is allowed",
+                                   format.name));
+    case TexelType::float32:
+      break;
+  }
+  return "float";
+}
+
+std::string with_numbers(std::string bytes, const std::vector<double>& values, const TableFormat& format) {
+  bytes.reserve(bytes.size() + values.size() * format.bytes);
+  for (const double value : values) append(bytes, value, format);
+  return bytes;
+}
+
+}  // namespace
+
+std::string npy_bytes(const std::vector<std::size_t>& shape, const std::vector<double>& values,
+                      const TableFormat& format) {
+  constexpr std::size_t alignment = 64;
+  constexpr std::size_t before_header = 10;  // magic, version, length
+  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({},), }}", numpy_type(format),
+                                   fmt::join(shape, ", "));
+  const std::size_t length = (before_header + header.size() + 1 + alignment - 1) / alignment * alignment;
+  header.append(length - before_header - header.size() - 1, ' ');
+  std::string bytes("\x93NUMPY\x01\x00", 8);
+  append(bytes, static_cast<std::uint16_t>(header.size() + 1));
+  return with_numbers(bytes + header + "\n", values, format);
+}
+
+std::string nrrd_bytes(const std::vector<std::size_t>& shape, const std::vector<double>& values,
+                       const TableFormat& format) {
+  const std::vector<std::size_t> fastest_first(shape.rbegin(), shape.rend());
+  return with_numbers(fmt::format("NRRD0004\ntype: {}\ndimension: {}\nsizes: {}\nendian: little\nencoding: raw\n\n",
+                                  nrrd_type(format), shape.size(), fmt::join(fastest_first, " ")),
+                      values, format);
+}
+
+}  // namespace raytruth

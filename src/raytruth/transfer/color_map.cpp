@@ -1,0 +1,237 @@
+#include "raytruth/transfer/color_map.hpp"
+
+#include "raytruth/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace raytruth {
+
+namespace {
+
+constexpr int samples_of_space = 1024;  // intervals
+constexpr int intervals_per_opacity_interval = 1024;
+
+// --- Colour spaces ---
+
+/// The reference white of D65.
+const Vector3<double> white{0.9505, 1, 1.089};
+
+double linear_light(double channel) {
+  return channel > 0.04045 ? std::pow((channel + 0.055) / 1.055, 2.4) : channel / 12.92;
+}
+
+double encoded(double light) { return light > 0.0031308 ? 1.055 * std::pow(light, 1 / 2.4) - 0.055 : 12.92 * light; }
+
+Vector3<double> lab_of(const Vector3<double>& rgb) {
+  const Vector3<double> light = rgb.unaryExpr(&linear_light);
+  const Vector3<double> xyz{light[0] * 0.4124 + light[1] * 0.3576 + light[2] * 0.1805,
+                            light[0] * 0.2126 + light[1] * 0.7152 + light[2] * 0.0722,
+                            light[0] * 0.0193 + light[1] * 0.1192 + light[2] * 0.9505};
+  const Vector3<double> f =
+      (xyz / white).unaryExpr([](double x) { return x > 0.008856 ? std::cbrt(x) : 7.787 * x + 16.0 / 116; });
+  return {116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])};
+}
+
+Vector3<double> rgb_of_lab(const Vector3<double>& lab) {
+  const double y = (lab[0] + 16) / 116;
+  const Vector3<double> f{lab[1] / 500 + y, y, y - lab[2] / 200};
+  const Vector3<double> xyz = white * f.unaryExpr([](double x) {
+    const double cube = x * x * x;
+    return cube > 0.008856 ? cube : (x - 16.0 / 116) / 7.787;
+  });
+  const Vector3<double> light{xyz[0] * 3.2406 - xyz[1] * 1.5372 - xyz[2] * 0.4986,
+                              -xyz[0] * 0.9689 + xyz[1] * 1.8758 + xyz[2] * 0.0415,
+                              xyz[0] * 0.0557 - xyz[1] * 0.2040 + xyz[2] * 1.0570};
+  return light.unaryExpr(&encoded);
+}
+
+Vector3<double> hsv_of(const Vector3<double>& rgb) {
+  const double most = rgb.maxCoeff();
+  const double spread = most - rgb.minCoeff();
+  if (spread == 0) return {0, 0, most};
+  double sixths = 0;
+  if (rgb[0] == most)
+    sixths = (rgb[1] - rgb[2]) / spread;
+  else if (rgb[1] == most)
+    sixths = 2 + (rgb[2] - rgb[0]) / spread;
+  else
+    sixths = 4 + (rgb[0] - rgb[1]) / spread;
+  return {(sixths < 0 ? sixths + 6 : sixths) / 6, spread / most, most};
+}
+
+Vector3<double> rgb_of_hsv(const Vector3<double>& hsv) {
+  const auto channel = [&hsv](double offset) {
+    const double sixths = std::fmod(offset + 6 * hsv[0], 6);
+    return hsv[2] * (1 - hsv[1] * std::clamp(std::min(sixths, 4 - sixths), 0.0, 1.0));
+  };
+  return {channel(5), channel(3), channel(1)};
+}
+
+/// Polar coordinates of L*a*b*: magnitude, angle from the axis of greys, hue.
+Vector3<double> msh_of(const Vector3<double>& rgb) {
+  const Vector3<double> lab = lab_of(rgb);
+  const double magnitude = lab.matrix().norm();
+  const double saturation = magnitude > 0.001 ? std::acos(std::min(1.0, lab[0] / magnitude)) : 0;
+  return {magnitude, saturation, saturation > 0.001 ? std::atan2(lab[2], lab[1]) : 0};
+}
+
+Vector3<double> rgb_of_msh(const Vector3<double>& msh) {
+  return rgb_of_lab({msh[0] * std::cos(msh[1]), msh[0] * std::sin(msh[1]) * std::cos(msh[2]),
+                     msh[0] * std::sin(msh[1]) * std::sin(msh[2])});
+}
+
+/// The hue that a grey of this magnitude is given at the end of a way from a colour, so that the way is even.
+double hue_of_grey(const Vector3<double>& msh, double magnitude) {
+  if (msh[0] >= magnitude - 0.1) return msh[2];
+  const double spin = msh[1] * std::sqrt(magnitude * magnitude - msh[0] * msh[0]) / (msh[0] * std::sin(msh[1]));
+  return msh[2] > -0.3 * std::numbers::pi ? msh[2] + spin : msh[2] - spin;
+}
+
+double hue_difference(double a, double b) {
+  const double difference = std::abs(a - b);
+  return std::min(difference, 2 * std::numbers::pi - difference);
+}
+
+/// K. Moreland, Diverging color maps for scientific visualization, 2009.
+Vector3<double> diverging_between(Vector3<double> a, Vector3<double> b, double x) {
+  constexpr double grey = 0.05;  // saturations below are none
+  constexpr double whitest = 88;
+  a = msh_of(a);
+  b = msh_of(b);
+  if (a[1] > grey && b[1] > grey && hue_difference(a[2], b[2]) > 0.33 * std::numbers::pi) {
+    const Vector3<double> middle{std::max({a[0], b[0], whitest}), 0, 0};
+    if (x < 0.5) {
+      b = middle;
+      x = 2 * x;
+    } else {
+      a = middle;
+      x = 2 * x - 1;
+    }
+  }
+  if (a[1] < grey && b[1] > grey)
+    a[2] = hue_of_grey(b, a[0]);
+  else if (b[1] < grey && a[1] > grey)
+    b[2] = hue_of_grey(a, b[0]);
+  return rgb_of_msh(a + x * (b - a));
+}
+
+// --- Functions of the scalar ---
+
+template <class Value>
+void check_order(const std::vector<Keyed<Value>>& keys, std::string_view what) {
+  if (keys.empty()) throw InputError(fmt::format("found no {}; one or more are allowed", what));
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (!std::isfinite(keys[i].s))
+      throw InputError(fmt::format("found scalar {} among {}; finite ones are allowed", keys[i].s, what));
+    if (i > 0 && keys[i].s < keys[i - 1].s)
+      throw InputError(
+          fmt::format("found scalar {} after {} among {}; ascending ones are allowed", keys[i].s, keys[i - 1].s, what));
+    if (i > 1 && keys[i].s == keys[i - 2].s)
+      throw InputError(fmt::format("found a third of the {} at scalar {}; at most two are allowed", what, keys[i].s));
+  }
+}
+
+void check_share(double value, std::string_view what) {
+  if (!(value >= 0 && value <= 1))
+    throw InputError(fmt::format("found {} {}; a number from 0 to 1 is allowed", what, value));
+}
+
+enum class Side { left, right };
+
+/// The limit at s from one side; `between(a, b, x)` is the value between two keys.
+template <class Value, class Between>
+Value limit_at(const std::vector<Keyed<Value>>& keys, double s, Side side, const Between& between) {
+  const auto first_at =
+      std::lower_bound(keys.begin(), keys.end(), s, [](const auto& key, double x) { return key.s < x; });
+  const auto behind =
+      std::upper_bound(keys.begin(), keys.end(), s, [](double x, const auto& key) { return x < key.s; });
+  const auto a = side == Side::left ? first_at : behind;  // the first key that does not lie before the limit
+  if (first_at == behind) {                               // no key at s
+    if (a == keys.begin()) return keys.front().value;
+    if (a == keys.end()) return keys.back().value;
+    return between((a - 1)->value, a->value, (s - (a - 1)->s) / (a->s - (a - 1)->s));
+  }
+  if (side == Side::left) {
+    if (first_at == keys.begin()) return first_at->value;
+    return between((first_at - 1)->value, first_at->value, 1.0);
+  }
+  if (behind == keys.end()) return (behind - 1)->value;
+  return between((behind - 1)->value, behind->value, 0.0);
+}
+
+/// The scalars between which both functions are linear, after sampling.
+std::vector<double> knots_of(const ColorMap& map) {
+  std::vector<double> knots;
+  const auto divide = [&knots](double low, double high, int intervals) {
+    for (int i = 1; i < intervals; ++i) knots.push_back(std::lerp(low, high, static_cast<double>(i) / intervals));
+  };
+  for (const auto& key : map.colors) knots.push_back(key.s);
+  if (map.space != ColorSpace::rgb && map.space != ColorSpace::step)
+    divide(map.colors.front().s, map.colors.back().s, samples_of_space);
+  for (std::size_t i = 0; i < map.opacities.size(); ++i) {
+    const auto& key = map.opacities[i];
+    knots.push_back(key.s);
+    if (i == 0) continue;
+    const auto& before = map.opacities[i - 1];
+    if (before.s < key.s && before.value != key.value) divide(before.s, key.s, intervals_per_opacity_interval);
+  }
+  std::sort(knots.begin(), knots.end());
+  knots.erase(std::unique(knots.begin(), knots.end()), knots.end());
+  return knots;
+}
+
+}  // namespace
+
+Vector3<double> color_between(ColorSpace space, const Vector3<double>& a, const Vector3<double>& b, double x) {
+  // The colours themselves, without the rounding of a way there and back.
+  if (x == 0 && space != ColorSpace::step) return a;
+  if (x == 1) return b;
+  const auto mean = [x](const Vector3<double>& p, const Vector3<double>& q) -> Vector3<double> {
+    return p + x * (q - p);
+  };
+  switch (space) {
+    case ColorSpace::rgb:
+      return mean(a, b);
+    case ColorSpace::hsv:
+      return rgb_of_hsv(mean(hsv_of(a), hsv_of(b))).max(0).min(1);
+    case ColorSpace::lab:
+      return rgb_of_lab(mean(lab_of(a), lab_of(b))).max(0).min(1);
+    case ColorSpace::diverging:
+      return diverging_between(a, b, x).max(0).min(1);
+    default:
+      return b;
+  }
+}
+
+PiecewiseLinear transfer_of(const ColorMap& map, double unit_length) {
+  check_order(map.colors, "colours");
+  check_order(map.opacities, "opacities");
+  for (const auto& key : map.colors)
+    for (const double channel : key.value) check_share(channel, "color");
+  for (const auto& key : map.opacities) check_share(key.value, "opacity");
+  if (!(unit_length > 0) || !std::isfinite(unit_length))
+    throw InputError(fmt::format("found unit_length {}; a finite number > 0 is allowed", unit_length));
+
+  const auto optics_at = [&](double s, Side side) -> Optics {
+    const double opacity =
+        limit_at(map.opacities, s, side, [](double a, double b, double x) { return std::lerp(a, b, x); });
+    return {-std::log1p(-std::min(opacity, largest_opacity)) / unit_length,
+            limit_at(map.colors, s, side, [&map](const Vector3<double>& a, const Vector3<double>& b, double x) {
+              return color_between(map.space, a, b, x);
+            })};
+  };
+  std::vector<TransferPoint> points;
+  for (const double s : knots_of(map)) {
+    const Optics left = optics_at(s, Side::left);
+    const Optics right = optics_at(s, Side::right);
+    points.push_back({s, left});
+    if (left.extinction != right.extinction || (left.color != right.color).any()) points.push_back({s, right});
+  }
+  return PiecewiseLinear(std::move(points));
+}
+
+}  // namespace raytruth

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "raytruth/core/vector3.hpp"
+#include "raytruth/transfer/piecewise_linear.hpp"
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+namespace raytruth {
+
+/// In which space colours between the points of a colour map are interpolated, as VTK does it.
+enum class ColorSpace {
+  rgb,
+  hsv,        ///< hue, saturation and value, hue the way that does not pass 0 (red)
+  lab,        ///< CIE L*a*b* of sRGB, D65
+  diverging,  ///< Msh, by way of white between saturated colours (Moreland 2009)
+  step,       ///< the colour of the upper point
+};
+
+/// A number or a colour at a scalar. At one scalar there may be two: the value from the left and that from the right.
+template <class Value>
+struct Keyed {
+  double s = 0;
+  Value value;
+};
+
+/// Colour and opacity as other programs keep them: two lists of their own.
+struct ColorMap {
+  ColorSpace space = ColorSpace::rgb;
+  std::vector<Keyed<Vector3<double>>> colors = {};
+  std::vector<Keyed<double>> opacities = {};
+};
+
+/// The colour between two others, x = 0 ... 1 from `a` to `b`; channels of [0, 1] stay in it.
+Vector3<double> color_between(ColorSpace space, const Vector3<double>& a, const Vector3<double>& b, double x);
+
+/// The transfer function of a colour map whose opacities are those of a stretch of `unit_length`. In the spaces other
+/// than rgb and step the colours are sampled at 1025 equally spaced scalars; an interval of opacities becomes 1024
+/// linear ones, as `from_opacity` makes them, but where the opacity is constant. Opacities above `largest_opacity` are
+/// clamped. Beyond both ends colour and opacity are constant. Throws InputError unless both lists have items, sorted by
+/// s, at most two at one s, finite, opacities and channels in [0, 1], and unit_length > 0.
+PiecewiseLinear transfer_of(const ColorMap& map, double unit_length);
+
+}  // namespace raytruth

@@ -1,0 +1,113 @@
+#include "experiments/verdict.hpp"
+
+#include <gtest/gtest.h>
+
+namespace raytruth {
+namespace {
+
+const RowNames names{.columns = {"measure", "field", "scheme", "xi", "xi_p05", "xi_p95", "status", "why"},
+                     .measures = {"signal_error"},
+                     .fields = {"white", "bonsai"},
+                     .transfers = {},
+                     .schemes = {"order1", "order2"}};
+
+const std::vector<Column> columns{{.name = "xi", .unit = "", .description = "", .radius = "xi_radius"}};
+
+Row row(const std::string& field, const std::string& scheme, Value xi) {
+  return {{"measure", "signal_error"},
+          {"field", field},
+          {"scheme", scheme},
+          {"xi", std::move(xi)},
+          {"xi_radius", 0.001},
+          {"xi_p05", 0.1},
+          {"xi_p95", 0.4},
+          {"status", "ok"},
+          {"why", Value()}};
+}
+
+const Row refused{{"measure", "signal_error"}, {"field", "bonsai"}, {"status", "refused"}, {"why", "no volume"}};
+const std::vector<Row> rows{row("white", "order1", 0.2), row("white", "order2", 0.02), refused};
+
+Verdict judge_text(const std::string& json) {
+  return judge(read_claim(JsonReader::from_text(json, "claim.json"), names), rows, columns);
+}
+
+CheckOutcome check_text(const std::string& json) {
+  return judge(read_check(JsonReader::from_text(json, "check.json"), names), rows);
+}
+
+TEST(Claim, FigureMeetsTheMeasuredIntervalOrNot) {
+  const auto stated = [](const std::string& figure) {
+    return judge_text(R"({"claim": "c", "resolution": 0.01, "row": {"field": "white", "scheme": "order1"},
+                          "measured": "xi", "stated": )" +
+                      figure + "}");
+  };
+  EXPECT_EQ(stated("0.2").verdict, "reproduced");
+  EXPECT_EQ(stated("0.2059").verdict, "reproduced");
+  EXPECT_EQ(stated("0.2061").verdict, "contradicted");
+  EXPECT_EQ(stated("0.1941").verdict, "reproduced");
+  EXPECT_EQ(stated("0.1939").verdict, "contradicted");
+  const Verdict verdict = stated("0.2");
+  EXPECT_DOUBLE_EQ(*as_number(verdict.low), 0.199);
+  EXPECT_DOUBLE_EQ(*as_number(verdict.high), 0.201);
+}
+
+TEST(Claim, FigureAgainstADistribution) {
+  const std::string claim = R"({"claim": "c", "stated": 0.4004, "resolution": 0.001, "measured": "xi", "low": "xi_p05",
+                                "high": "xi_p95", "why": "spread", "row": {"field": "white", "scheme": "order1"}})";
+  const Verdict verdict = judge_text(claim);
+  EXPECT_EQ(verdict.verdict, "reproduced");
+  EXPECT_EQ(verdict.high, Value(0.4));
+  EXPECT_EQ(verdict.why, Value("spread"));
+}
+
+TEST(Claim, IsNotComparableWithoutARowOfItsOwn) {
+  const auto selecting = [](const std::string& selector) {
+    return judge_text(R"({"claim": "c", "stated": 1, "resolution": 1, "measured": "xi", "row": )" + selector + "}");
+  };
+  EXPECT_EQ(selecting(R"({"field": "bonsai"})").verdict, "not comparable");
+  EXPECT_EQ(selecting(R"({"field": "bonsai", "scheme": "order1"})").why, Value("no volume"));
+  EXPECT_EQ(selecting(R"({"field": "white"})").verdict, "not comparable");
+  EXPECT_EQ(selecting(R"({"field": "white", "xi": 7})").verdict, "not comparable");
+  const Verdict elsewhere = judge_text(R"({"claim": "c", "stated": 30, "why": "their hardware"})");
+  EXPECT_EQ(elsewhere.verdict, "not comparable");
+  EXPECT_EQ(elsewhere.why, Value("their hardware"));
+}
+
+TEST(Claim, SentenceIsTestedOnAllRowsThatThereAre) {
+  const auto testing = [](const std::string& bound) {
+    return judge_text(R"({"claim": "c", "stated": "small", "rows": {"measure": "signal_error"},
+                          "test": {"column": "xi", )" +
+                      bound + "}}");
+  };
+  EXPECT_EQ(testing(R"("at_most": 0.2)").verdict, "reproduced");
+  EXPECT_EQ(testing(R"("at_most": 0.19)").verdict, "contradicted");
+  EXPECT_EQ(testing(R"("at_least": 0.02)").measured, Value(0.02));
+  EXPECT_EQ(testing(R"("at_least": 0.03)").verdict, "contradicted");
+}
+
+TEST(Check, HoldsOnTheWorstRow) {
+  const CheckOutcome outcome =
+      check_text(R"({"bound": "b", "rows": {"scheme": ["order1", "order2"]}, "column": "xi", "at_most": 0.2})");
+  EXPECT_TRUE(outcome.holds);
+  EXPECT_EQ(outcome.measured, Value(0.2));
+  EXPECT_FALSE(check_text(R"({"bound": "b", "rows": {"scheme": "order1"}, "column": "xi", "at_most": 0.1})").holds);
+}
+
+TEST(Check, DoesNotHoldWhereThereIsNothingToMeasure) {
+  const CheckOutcome absent =
+      check_text(R"({"bound": "b", "rows": {"field": "bonsai"}, "column": "xi", "at_most": 9})");
+  EXPECT_FALSE(absent.holds);
+  EXPECT_EQ(absent.why, Value("no volume"));
+  const CheckOutcome none =
+      check_text(R"({"bound": "b", "rows": {"xi": 3, "status": "ok"}, "column": "xi", "at_most": 9})");
+  EXPECT_FALSE(none.holds);
+  EXPECT_EQ(none.measured, Value());
+  const std::vector<Row> with_null{row("white", "order1", Value())};
+  const Check check = read_check(
+      JsonReader::from_text(R"({"bound": "b", "rows": {"field": "white"}, "column": "xi", "at_most": 9})", "f"), names);
+  EXPECT_FALSE(judge(check, with_null).holds);
+}
+
+}  // namespace
+}  // namespace raytruth
