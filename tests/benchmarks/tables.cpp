@@ -2,6 +2,7 @@
 // dissertation, table 5.1).
 
 #include "paired.hpp"
+#include "raytruth/kernels/table_kernels.hpp"
 #include "raytruth/tables/dissertation_linear.hpp"
 #include "raytruth/tables/exact.hpp"
 #include "raytruth/tables/fast_tables.hpp"
@@ -237,7 +238,7 @@ void levels_of_subranges(benchmark::State& state) {
   const auto& versions = table_kernel_versions();
   for (std::size_t i = 1; i < versions.size(); ++i)
     lower.push_back({i + 1 == versions.size() ? "baseline" : "x86_64_v3", [&builders, kernels = versions[i]] {
-                       build_subrange_table(builders.transfer, builders.axes, builders.table, *kernels);
+                       build_subrange_table(builders.transfer, builders.axes, builders.table, kernels);
                        return static_cast<double>(builders.table.values[4]);
                      }});
   if (lower.empty()) return state.SkipWithError("this processor has one level only");

@@ -216,7 +216,7 @@ class Band {
   FloatLanes offsets_;
 };
 
-/// Runs a band of Algebra<IsThin>, IsThin: every t is at most `thin`.
+/// Runs a band of Algebra<IsThin>, IsThin: every t is at most `thin_interval`.
 template <template <bool> class Algebra>
 void run_band(const TableIntervals& intervals, std::size_t first_width, bool backwards, float* buffer,
               float* const* tables) {
@@ -226,7 +226,7 @@ void run_band(const TableIntervals& intervals, std::size_t first_width, bool bac
     else
       Band<Algebra<IsThin>, false>(intervals, first_width).run(buffer, tables);
   };
-  if (intervals.most_rate * intervals.length <= thin * static_cast<float>(first_width))
+  if (intervals.most_rate * intervals.length <= thin_interval * static_cast<float>(first_width))
     run.template operator()<true>();
   else
     run.template operator()<false>();

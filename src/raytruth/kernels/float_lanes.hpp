@@ -149,10 +149,10 @@ inline FloatLanes exponential_slope(const FloatLanes& r) {
 }
 
 /// Opacities are small where an interval is a small part of a slab: up to this t no reduction is needed.
-inline constexpr float thin = 0.5F;
+inline constexpr float thin_interval = 0.5F;
 
-/// 1 - 2^-t for t >= 0, infinity too, or, IsThin, for 0 <= t <= thin. With n the integer next to -t and r = -t - n, 1 -
-/// 2^n 2^r = (1 - 2^n) - 2^n r p(r) keeps the digits of small opacities too. Beyond t = 126 the opacity is 1.
+/// 1 - 2^-t for t >= 0, infinity too, or, IsThin, for 0 <= t <= thin_interval. With n the integer next to -t and r = -t
+/// - n, 1 - 2^n 2^r = (1 - 2^n) - 2^n r p(r) keeps the digits of small opacities too. Beyond t = 126 the opacity is 1.
 template <bool IsThin>
 FloatLanes opacity_of(const FloatLanes& t) {
   if constexpr (IsThin) return t * exponential_slope(FloatLanes(0.0F) - t);

@@ -35,13 +35,13 @@
 
 namespace raytruth::inline RAYTRUTH_LEVEL {
 
-constexpr double goal = -50.5;    ///< log2 of the truncation error, relative to the integral
-constexpr double deepest = 32;    ///< optical depth in one go; deeper pieces are halved
-constexpr double most_error = 1;  ///< of an optical depth; beyond it, the crude bound
-constexpr double smallest = 0x1p-1000;
-constexpr double slack = 1 + 0x1p-20;       ///< second-order terms, and the rounding of the error bounds themselves
-constexpr double least_rate = 0x1p-24;      ///< of a largest |x'| where the truncation error is bounded
-constexpr double log2_e_above = 1.4426951;  // rounded up
+constexpr double log2_truncation_goal = -50.5;  ///< log2 of the truncation error, relative to the integral
+constexpr double deepest_at_once = 32;          ///< optical depth in one go; deeper pieces are halved
+constexpr double largest_depth_error = 1;       ///< of an optical depth; beyond it, the crude bound
+constexpr double smallest_summand = 0x1p-1000;
+constexpr double rounding_slack = 1 + 0x1p-20;  ///< second-order terms, and the rounding of the error bounds themselves
+constexpr double least_rate_share = 0x1p-24;    ///< of a largest |x'| where the truncation error is bounded
+constexpr double log2_e_above = 1.4426951;      // rounded up
 
 /// Rounding of the depth, relative: a term with 1 - x, two products, a sum and the length's share, 6; partial sums,
 /// Degree; the length, 4.
@@ -81,13 +81,14 @@ constexpr Matrix<Degree> chebyshev_from_bernstein() {
 template <int Degree>
 struct Ellipse {
   explicit Ellipse(double rho)
-      : log2_factor(std::log2(slack * 64 / 15 / (1 - 1 / (rho * rho)))), nodes_per_bit(slack / (2 * std::log2(rho))) {
+      : log2_factor(std::log2(rounding_slack * 64 / 15 / (1 - 1 / (rho * rho)))),
+        nodes_per_bit(rounding_slack / (2 * std::log2(rho))) {
     for (int k = 0; k <= Degree + 1; ++k) {
-      const double a = slack * (std::pow(rho, k) + std::pow(rho, -k)) / 2;
+      const double a = rounding_slack * (std::pow(rho, k) + std::pow(rho, -k)) / 2;
       largest_chebyshev[static_cast<std::size_t>(k)] = a;
       chebyshev_sum += a;
     }
-    first_squared = slack * largest_chebyshev[1] * largest_chebyshev[1] / largest_chebyshev[2];
+    first_squared = rounding_slack * largest_chebyshev[1] * largest_chebyshev[1] / largest_chebyshev[2];
   }
 
   std::array<double, Degree + 2> largest_chebyshev{};  ///< a_k
@@ -174,7 +175,7 @@ Prepared<Degree, Vector> prepare(const LinearPiece<Degree, Vector>& piece) {
   result.below = multiply_add(piece.extinction_at_0, larger(zero, Vector(highest - 1.0)),
                               piece.extinction_at_1 * larger(zero, Vector(zero - lowest)));
   result.depth_below = 2 * piece.length * result.below;
-  result.is_shallow = result.depth + result.depth_below < Vector(deepest);
+  result.is_shallow = result.depth + result.depth_below < Vector(deepest_at_once);
   const Vector factor = select(result.is_shallow, Vector(-std::numbers::log2e), zero);
   for (std::size_t j = 0; j <= Degree; ++j) result.integrand.exponent[j] = factor * depth[j];
   result.slope = magnitude(piece.extinction_at_1 - piece.extinction_at_0);
@@ -186,10 +187,10 @@ Prepared<Degree, Vector> prepare(const LinearPiece<Degree, Vector>& piece) {
 /// integral of T >= length / (1 + D); where tau nearly vanishes, of what the extinctions at 0 and 1 would make it.
 template <int Degree, class Vector>
 Vector log2_goal(const LinearPiece<Degree, Vector>& piece, const Prepared<Degree, Vector>& prepared, bool associated) {
-  const auto log2_of = [](const Vector& x) { return log2_above(larger<Vector>(x, smallest)); };
+  const auto log2_of = [](const Vector& x) { return log2_above(larger<Vector>(x, smallest_summand)); };
   const Vector most_depth = piece.length * larger(piece.extinction_at_0, piece.extinction_at_1);
   const Vector sum = associated ? larger(prepared.depth, Vector(0x1p-40 * most_depth)) : piece.length;
-  return log2_of(sum) - log2_of(1 + prepared.depth) + goal;
+  return log2_of(sum) - log2_of(1 + prepared.depth) + log2_truncation_goal;
 }
 
 template <int Degree, class Vector>
@@ -259,9 +260,9 @@ Vector nodes_for(const LinearPiece<Degree, Vector>& piece, const Prepared<Degree
         largest = multiply_add(Vector(magnitude(rate[k])), Vector(a[k]), largest);
       largest += uncertainty * (Degree * (Degree + 1) * ellipse.chebyshev_sum);
       // No less, for the integral of O by the same nodes is to have some 20 bits.
-      largest = larger<Vector>(largest, least_rate);
+      largest = larger<Vector>(largest, least_rate_share);
       const Vector depth = (magnitude(kappa[0]) + first) + (magnitude(second) + others);
-      largest *= smaller<Vector>(1, multiply_add(Vector(0.5 * depth), depth, Vector(smallest)));
+      largest *= smaller<Vector>(1, multiply_add(Vector(0.5 * depth), depth, Vector(smallest_summand)));
     } else {
       largest = larger(magnitude(chebyshev[0]), magnitude(Vector(1 - chebyshev[0])));
       for (std::size_t k = 1; k <= Degree; ++k)
@@ -375,7 +376,7 @@ Weights<Vector> weights_of(const LinearPiece<Degree, Vector>& piece, const Prepa
 
   // A node's O errs by the exponent's error times |Q| T <= |O| (1 + depth_below).
   const Vector term_error = PowerOf2<Vector>::error_less_1 + exponent_unit * (1 + depth_below) + (additions + 2) * unit;
-  const Vector transmitted = 1 + sums.opacity + Vector(2 * least_rate);  // the integral of T du, not below it
+  const Vector transmitted = 1 + sums.opacity + Vector(2 * least_rate_share);  // the integral of T du, not below it
   // |O| is O, or where that is negative at most T depth_below.
   const Vector opacities = 2 * depth_below * transmitted - sums.opacity;
   const Vector rate_error = (Degree + 4) * unit * opacities + exponent_unit * depth_below * transmitted;
@@ -412,14 +413,14 @@ template <int Degree, class Vector>
 PieceIntegral<Vector> finish(const LinearPiece<Degree, Vector>& piece, const Prepared<Degree, Vector>& prepared,
                              const Weights<Vector>& weights, bool associated, const Vector& log2_truncation) {
   const Vector depth_rounding = depth_units<Degree> * unit_roundoff * (prepared.depth + 2 * prepared.depth_below);
-  const Vector depth_error = slack * (depth_rounding + prepared.depth_from_x);
+  const Vector depth_error = rounding_slack * (depth_rounding + prepared.depth_from_x);
   // An error of the depth above 1, a sum out of range: the integrals of tau T and T are at most 1 and length.
   const Vector most = associated ? Vector(1) : piece.length;
   const Vector crude = magnitude(weights.weight_0) + magnitude(weights.weight_1) + most * prepared.reach;
   const Vector error = weights.error + power_of_2_above(log2_truncation);
   return {.weight_0 = weights.weight_0,
           .weight_1 = weights.weight_1,
-          .weight_error = slack * select(depth_error < Vector(most_error), error, crude),
+          .weight_error = rounding_slack * select(depth_error < Vector(largest_depth_error), error, crude),
           .depth = prepared.depth,
           .depth_error = depth_error};
 }

@@ -23,7 +23,7 @@ inline FloatLanes clamped(const FloatLanes& x, const FloatLanes& low, const Floa
 /// Neighbouring front entries in lanes. In one step their scalars differ by at most one entry from lane to lane, since
 /// the front's weight (1 - t)(1 - 2t) lies in [-1/8, 1]: so all of them are among as many neighbouring entries of the
 /// transfer function as there are lanes, which are read at once and permuted, not gathered. IsThin: no step's t exceeds
-/// `thin`.
+/// `thin_interval`.
 template <bool IsThin>
 void second_order_lanes(const TransferEntries& transfer, const SecondOrderSteps& steps, float front, float middle,
                         float back, std::array<FloatLanes, 4>& slab) {

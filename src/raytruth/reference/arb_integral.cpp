@@ -83,13 +83,13 @@ Ball mean_transmittance(const Ball& depth) {
   return hull(1.0, exp(-depth));
 }
 
-/// What a stretch does, seen from its front.
-struct Slab {
+/// What a stretch sends to its front, and its optical depth.
+struct StretchLight {
   Color color;
   Ball depth;
 };
 
-Slab integrate(const Stretch& stretch, Emission emission, std::int64_t& evaluations) {
+StretchLight integrate(const Stretch& stretch, Emission emission, std::int64_t& evaluations) {
   const Polynomial depth = stretch.length * stretch.extinction.antiderivative();
   const Ball total = depth(1.0);
   const Ball opacity = -expm1(-total);
@@ -107,9 +107,9 @@ Slab integrate(const Stretch& stretch, Emission emission, std::int64_t& evaluati
   const Ball of_weight = std::all_of(change.begin(), change.end(), is_zero) || density.size() == 0
                              ? Ball()
                              : integral(stretch.weight * density, depth, scale, evaluations);
-  Slab slab{.color = {}, .depth = total};
-  for (std::size_t i = 0; i < 3; ++i) slab.color[i] = stretch.color[i] * of_one + change[i] * of_weight;
-  return slab;
+  StretchLight light{.color = {}, .depth = total};
+  for (std::size_t i = 0; i < 3; ++i) light.color[i] = stretch.color[i] * of_one + change[i] * of_weight;
+  return light;
 }
 
 /// The nearest binary64 number; `radius` grows to its distance from the ball's far end.
@@ -145,9 +145,9 @@ Certified certify(const std::vector<Piece>& pieces, const Cut& cut, Emission emi
   for (const Piece& piece : pieces) {
     cut(piece, [&](const Stretch& stretch) {
       const Ball front = exp(-depth);
-      const Slab slab = integrate(stretch, emission, result.evaluations);
-      for (std::size_t i = 0; i < 3; ++i) color[i] += front * slab.color[i];
-      depth += slab.depth;
+      const StretchLight light = integrate(stretch, emission, result.evaluations);
+      for (std::size_t i = 0; i < 3; ++i) color[i] += front * light.color[i];
+      depth += light.depth;
     });
     opacity = -expm1(-depth);
     // Nothing behind shows any more: it sends at most `hidden`, and the opacity is at least what it is here.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "raytruth/core/vector3.hpp"
+#include "raytruth/core/slab.hpp"
 
 #include <cstdint>
 
@@ -11,9 +11,7 @@ enum class Status { converged, not_converged };
 
 /// The volume rendering integral with a proven bound: every channel of the exact colour and the exact opacity lie
 /// within `radius` of the values here.
-struct Certified {
-  Vector3<double> color = Vector3<double>::Constant(0);
-  double opacity = 0;
+struct Certified : Slab<> {
   double radius = 0;
   std::int64_t evaluations = 0;  ///< of the integrand
   Status status = Status::converged;

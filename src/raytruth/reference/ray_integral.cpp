@@ -3,11 +3,16 @@
 #include "raytruth/core/double_double.hpp"
 #include "raytruth/kernels/exponential.hpp"
 #include "raytruth/kernels/gauss_legendre.hpp"
+#include "raytruth/kernels/kernels.hpp"
+#include "raytruth/reference/knot_cut.hpp"
+#include "raytruth/reference/linear_interval.hpp"
 #include "raytruth/reference/piece_integral.hpp"
 #include "raytruth/signals/piecewise_polynomial.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <vector>
 
 namespace raytruth {
 
@@ -60,10 +65,8 @@ double drift_of(double depth, double transmittance, double depth_error) {
   return transmittance * 2 * depth_error + (depth < 690 ? 0 : 0x1p-990);
 }
 
-}  // namespace
-
 /// The part of a ray that has been integrated.
-struct RayIntegral::Sum {
+struct Sum {
   DoubleDouble depth;
   double depth_error = 0;
   Vector3<double> color = Vector3<double>::Constant(0);
@@ -83,10 +86,16 @@ struct RayIntegral::Sum {
   }
 };
 
-RayIntegral::RayIntegral(const PiecewiseLinear& transfer, Emission emission)
-    : intervals_(transfer), emission_(emission) {}
-
-namespace {
+/// What a ray of a degree leaves behind for the next one: memory.
+template <int Degree>
+struct Buffers {
+  std::vector<KnotStretch> stretches;
+  std::vector<LinearPiece<Degree, Eight>> pieces;  ///< the first `count` lanes are in use
+  std::vector<PieceIntegral<Eight>> integrals;
+  std::vector<std::size_t> intervals;
+  std::vector<double> depth_errors;  ///< by what the scalar does outside its interval
+  std::vector<double> color_errors;
+};
 
 template <int Degree>
 void set_stretch(Stretches<Degree>& stretches, std::size_t lane, const Bernstein<Degree>& polynomial,
@@ -116,9 +125,33 @@ bool is_noise(const NormalisedStretches<Degree>& normalised, std::size_t lane) {
 
 }  // namespace
 
+struct RayIntegral::Parts {
+  Parts(const PiecewiseLinear& transfer, Emission its_emission) : intervals_(transfer), emission_(its_emission) {}
+
+  template <int Degree>
+  Certified integrate_ray(const Chain<Degree>& signal, const SignalError& error, double tolerance);
+
+ private:
+  template <int Degree>
+  void fit(const Chain<Degree>& signal, const SignalError& error, Buffers<Degree>& buffers) const;
+  template <int Degree>
+  void accept_or_halve(const Piece<Degree>& piece, double signal_error, const KnotStretch& stretch,
+                       const NormalisedStretches<Degree>& normalised, std::size_t lane, int& budget,
+                       Buffers<Degree>& buffers) const;
+  template <int Degree>
+  void integrate_pieces(Buffers<Degree>& buffers, Sum& sum) const;
+  [[nodiscard]] Certified finish(const Sum& sum, double length, double hidden, const SignalError& error,
+                                 double tolerance) const;
+
+  LinearIntervals intervals_;
+  Emission emission_;
+  KnotCut cut_;
+  std::tuple<Buffers<3>, Buffers<largest_degree>> buffers_;
+};
+
 /// Makes pieces of the stretches, front to back.
 template <int Degree>
-void RayIntegral::fit(const Chain<Degree>& signal, const SignalError& error, Buffers<Degree>& buffers) const {
+void RayIntegral::Parts::fit(const Chain<Degree>& signal, const SignalError& error, Buffers<Degree>& buffers) const {
   const auto error_of = [&error](std::size_t piece) { return error.of_pieces.empty() ? 0.0 : error.of_pieces[piece]; };
   const auto& stretches = buffers.stretches;
   Stretches<Degree> eight;
@@ -141,9 +174,9 @@ void RayIntegral::fit(const Chain<Degree>& signal, const SignalError& error, Buf
 
 /// Appends a stretch that is inside its interval but for what its errors cover; else its two halves.
 template <int Degree>
-void RayIntegral::accept_or_halve(const Piece<Degree>& piece, double signal_error, const KnotStretch& stretch,
-                                  const NormalisedStretches<Degree>& normalised, std::size_t lane, int& budget,
-                                  Buffers<Degree>& buffers) const {
+void RayIntegral::Parts::accept_or_halve(const Piece<Degree>& piece, double signal_error, const KnotStretch& stretch,
+                                         const NormalisedStretches<Degree>& normalised, std::size_t lane, int& budget,
+                                         Buffers<Degree>& buffers) const {
   const LinearInterval& interval = intervals_[stretch.interval];
   const auto beyond_end = [&](const IntervalEnd& end, const Margins& margins) {
     return beyond(end, margins.at_begin[lane], margins.at_end[lane], margins.inside[lane], interval, intervals_);
@@ -197,7 +230,7 @@ void RayIntegral::accept_or_halve(const Piece<Degree>& piece, double signal_erro
 
 /// Integrates the pieces and adds them to the sum.
 template <int Degree>
-void RayIntegral::integrate_pieces(Buffers<Degree>& buffers, Sum& sum) const {
+void RayIntegral::Parts::integrate_pieces(Buffers<Degree>& buffers, Sum& sum) const {
   const std::size_t count = buffers.intervals.size();
   buffers.integrals.clear();
   for (const auto& piece : buffers.pieces) buffers.integrals.push_back(integrate(piece, emission_));
@@ -239,8 +272,8 @@ void RayIntegral::integrate_pieces(Buffers<Degree>& buffers, Sum& sum) const {
 }
 
 /// The whole ray: what the sums, an unknown end and what is hidden behind opaque matter add to the radius.
-Certified RayIntegral::finish(const Sum& sum, double length, double hidden, const SignalError& error,
-                              double tolerance) const {
+Certified RayIntegral::Parts::finish(const Sum& sum, double length, double hidden, const SignalError& error,
+                                     double tolerance) const {
   const bool associated = emission_ == Emission::associated;
   const double most_color = intervals_.most_color();
   const double most_extinction = intervals_.most_extinction();
@@ -279,7 +312,7 @@ Certified RayIntegral::finish(const Sum& sum, double length, double hidden, cons
 }
 
 template <int Degree>
-Certified RayIntegral::operator()(const Chain<Degree>& signal, const SignalError& error, double tolerance) {
+Certified RayIntegral::Parts::integrate_ray(const Chain<Degree>& signal, const SignalError& error, double tolerance) {
   auto& buffers = std::get<Buffers<Degree>>(buffers_);
   Sum sum;
   double hidden = 0;  // length behind what is opaque
@@ -296,6 +329,22 @@ Certified RayIntegral::operator()(const Chain<Degree>& signal, const SignalError
     }
   }
   return finish(sum, signal.length(), hidden, error, tolerance);
+}
+
+RayIntegral::RayIntegral(const PiecewiseLinear& transfer, Emission emission)
+    : parts_(std::make_unique<Parts>(transfer, emission)) {}
+RayIntegral::~RayIntegral() = default;
+RayIntegral::RayIntegral(const RayIntegral& other) : parts_(std::make_unique<Parts>(*other.parts_)) {}
+RayIntegral& RayIntegral::operator=(const RayIntegral& other) {
+  if (this != &other) *parts_ = *other.parts_;
+  return *this;
+}
+RayIntegral::RayIntegral(RayIntegral&&) noexcept = default;
+RayIntegral& RayIntegral::operator=(RayIntegral&&) noexcept = default;
+
+template <int Degree>
+Certified RayIntegral::operator()(const Chain<Degree>& signal, const SignalError& error, double tolerance) {
+  return parts_->integrate_ray(signal, error, tolerance);
 }
 
 template Certified RayIntegral::operator()(const Chain<3>&, const SignalError&, double);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "raytruth/core/vector3.hpp"
+#include "raytruth/core/slab.hpp"
 #include "raytruth/reference/certified.hpp"
 
 #include <cstdint>
@@ -13,9 +13,7 @@ inline constexpr std::int64_t voxels_per_fetch = 8;
 
 /// What a scheme makes of a ray, and what it reads and does for it.
 template <class Real = double>
-struct Outcome {
-  Vector3<Real> color = Vector3<Real>::Constant(Real(0));
-  Real opacity = Real(0);
+struct Outcome : Slab<Real> {
   double radius = 0;            ///< of an exact integral: how far it may be from what the scheme defines; else 0
   std::int64_t fetches = 0;     ///< samples of the signal, those between the given ones included
   std::int64_t voxels = 0;      ///< that the fetches read; of cell_cubic eight per cell, each a fetch of its own

@@ -91,4 +91,13 @@ void sample_constant(const Chain<Degree, Real>& signal, const Real& step, Sample
   samples.values.push_back(signal.pieces.back().polynomial.coefficients.back());
 }
 
+/// Samples at this step, or, without one, at the borders of the signal's pieces and at their midpoints.
+template <int Degree>
+void take_samples(const Chain<Degree>& signal, const std::optional<double>& step, Samples<double>& samples) {
+  if (step)
+    sample_constant(signal, *step, samples);
+  else
+    sample_cells(signal, samples);
+}
+
 }  // namespace raytruth

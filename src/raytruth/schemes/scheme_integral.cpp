@@ -109,8 +109,7 @@ Outcome<> SchemeIntegral::integrate_exactly(const Approximation& approximation, 
   return composite(approximation, omissions, [this](SlabPieces pieces) {
     slab_.pieces.assign(pieces.begin(), pieces.end());
     slab_.end = pieces.back().start + DoubleDouble(pieces.back().length);
-    const Certified slab = exact_(slab_);
-    return Rules<double>::vec4(slab.color[0], slab.color[1], slab.color[2], slab.opacity);
+    return exact_(slab_).rgba();
   });
 }
 

@@ -2,6 +2,8 @@
 
 #include "raytruth/skipping/overshoot.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace raytruth {
@@ -12,8 +14,6 @@ constexpr double of_virtual_samples = 1.0 / 8;  // Lee 2010, eq. 8
 constexpr double longest_chord = std::numbers::sqrt3;
 
 }  // namespace
-
-double field_overshoot(FieldKind field) { return field == FieldKind::catmull_rom ? (1.25 * 1.25 * 1.25 - 1) / 2 : 0; }
 
 BlockRefinement block_refinement(FieldKind field, const std::optional<double>& step, BlockBounds bounds) {
   switch (bounds) {
@@ -26,6 +26,11 @@ BlockRefinement block_refinement(FieldKind field, const std::optional<double>& s
       return {.growth = proven_growth(BlockRegion::cells, step.value_or(longest_chord)),
               .overshoot = of_field + of_virtual_samples * (1 + 2 * of_field)};
   }
+}
+
+double margin_of(const Grid& grid) {
+  const auto [low, high] = grid.range();
+  return 1e-7 * std::max({high - low, std::abs(low), std::abs(high)});
 }
 
 }  // namespace raytruth

@@ -1,5 +1,6 @@
 #include "raytruth/tables/fast_second_order.hpp"
 
+#include "raytruth/kernels/slab_kernels.hpp"
 #include "raytruth/reference/certified.hpp"
 #include "raytruth/tables/second_order.hpp"
 #include "raytruth/transfer/emission.hpp"

@@ -1,11 +1,12 @@
 #pragma once
 
-#include "raytruth/kernels/slab_kernels.hpp"
 #include "raytruth/schemes/integral_scheme.hpp"
 #include "raytruth/tables/table3.hpp"
 #include "raytruth/transfer/piecewise_linear.hpp"
 
 namespace raytruth {
+
+struct SlabKernels;
 
 // Tables of second order in binary32, for rendering, into tables that have their axes already: memory that is used
 // again costs less than fresh one. Emission is associated; the transfer function is read at the table's entries and

@@ -2,6 +2,7 @@
 
 #include "raytruth/schemes/slab_integrals.hpp"
 #include "raytruth/tables/fast_second_order.hpp"
+#include "raytruth/kernels/slab_kernels.hpp"
 
 #include <tbb/parallel_for.h>
 

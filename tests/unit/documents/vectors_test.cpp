@@ -121,7 +121,7 @@ TEST(Vectors, SeedsDiffer) {
   EXPECT_NE(vectors_json(1).at("vectors"), vectors_json(2).at("vectors"));
 }
 
-const Certified truth{.color = {0.5, 0.25, 0}, .opacity = 0.125, .radius = 1e-14};
+const Certified truth{{.color = {0.5, 0.25, 0}, .opacity = 0.125}, 1e-14};
 
 TEST(DigitsCorrect, AreThoseOfTheWorstChannel) {
   EXPECT_NEAR(digits_correct({{0.5, 0.25 + 0.5e-3, 0.5e-5}, 0.125}, truth), 3, 1e-9);
@@ -137,7 +137,7 @@ TEST(DigitsCorrect, AreBoundedByZeroAndByTheRadius) {
 }
 
 TEST(DigitsCorrect, OfNothing) {
-  const Certified nothing{.radius = 1e-20};
+  const Certified nothing{{}, 1e-20};
   EXPECT_NEAR(digits_correct({{0, 0, 0}, 0}, nothing), 53 * std::log10(2), 1e-9);
   EXPECT_EQ(digits_correct({{0, 0, 0}, 1e-19}, nothing), 0);
 }

@@ -2,6 +2,7 @@
 #include "raytruth/tables/second_order.hpp"
 
 #include "raytruth/core/random.hpp"
+#include "raytruth/kernels/slab_kernels.hpp"
 #include "raytruth/reference/certified.hpp"
 #include "raytruth/tables/partial_pre_integration.hpp"
 #include "raytruth/transfer/emission.hpp"

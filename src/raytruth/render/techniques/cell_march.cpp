@@ -4,7 +4,9 @@
 #include "raytruth/core/error.hpp"
 #include "raytruth/kernels/cell_kernels.hpp"
 #include "raytruth/reference/certified.hpp"
+#include "raytruth/render/technique.hpp"
 #include "raytruth/render/techniques/lanes4.hpp"
+#include "raytruth/render/techniques/skipped_space.hpp"
 #include "raytruth/rules/rules.hpp"
 #include "raytruth/signals/cell_walk.hpp"
 #include "raytruth/skipping/clear_scalars.hpp"
@@ -245,5 +247,33 @@ Eigen::Array4d CellRay::operator()(const PixelRay& pixel, const std::optional<st
   composite(sum);
   return sum;
 }
+
+namespace {
+
+PixelRendererFactory prepare(const PreparedScene& prepared) {
+  const Scene& scene = prepared.scene;
+  const auto& field = std::get<TrilinearField>(prepared.field);
+  const auto march = std::make_shared<const CellMarch>(scene.grid, scene.transfer, scene.emission, scene.opaque);
+  auto blocks = asked_blocks(scene, field);
+  if (!blocks)
+    blocks =
+        std::make_shared<const OccupiedBlocks>(certain_blocks(field, ClearScalars(scene.transfer, scene.emission)));
+  return [&scene, march, blocks]() -> PixelRenderer {
+    return [march, blocks, ray = CellRay(*march, scene.transfer, scene.emission),
+            parts_of = PartsOfRay(scene.grid.size, blocks.get())](const PixelRay& pixel) mutable -> PixelLight {
+      return {ray(pixel, parts_of(pixel.ray))};
+    };
+  };
+}
+
+}  // namespace
+
+extern const Technique cell_march_pixels;
+const Technique cell_march_pixels{
+    .name = "cell_march",
+    .summary = "the cubic of every cell, from voxels in binary32",
+    .applies = [](const Scene& scene) { return scene.scheme == "cell_cubic" && scene.field == FieldKind::trilinear; },
+    .refuse = [](const PreparedScene& /*prepared*/) {},
+    .prepare = prepare};
 
 }  // namespace raytruth

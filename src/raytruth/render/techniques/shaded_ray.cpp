@@ -148,23 +148,17 @@ SlabLight LitView::slab_light(const SceneShading& shading, double begin, double 
   return {std::move(shader), model};
 }
 
-template <int Degree>
-ShadedRay<Degree>::ShadedRay(const Scene& scene)
-    : scene_(scene),
-      scheme_(find_named(catalogue::integral_schemes(), scene.scheme)),
-      clear_(scene.transfer, scene.emission),
-      look_up_(scene.transfer, scene.emission),
-      exact_(scene.transfer, scene.emission),
-      approximate_(scene.transfer, scene.emission) {
+void refuse_unlit(const Scene& scene) {
+  const IntegralScheme* const scheme = find_named(catalogue::integral_schemes(), scene.scheme);
   const Shading* const method = scene.shading->method;
   const bool is_reference = scene.scheme == "reference";
-  if (!is_reference && (scheme_ == nullptr || !can_be_lit(*scheme_)))
+  if (!is_reference && (scheme == nullptr || !can_be_lit(*scheme)))
     throw InputError(fmt::format(
         "scheme {} with shading; reference, cell_cubic, and sampled and ideal schemes are allowed", scene.scheme));
-  if (Degree != 3 && !is_reference && std::holds_alternative<CellCubic>(scheme_->method))
+  if (scene.field != FieldKind::trilinear && !is_reference && std::holds_alternative<CellCubic>(scheme->method))
     throw InputError("scheme cell_cubic: a trilinear ray, a cubic in each cell, is needed");
   if (method == nullptr) return;
-  if (is_reference || std::holds_alternative<Sampled>(scheme_->method))
+  if (is_reference || std::holds_alternative<Sampled>(scheme->method))
     throw InputError(
         fmt::format("shading {} with the scheme {}, whose points have normals of their own; no method, "
                     "or pointwise, is allowed",
@@ -174,6 +168,15 @@ ShadedRay<Degree>::ShadedRay(const Scene& scene)
   const std::string_view why = scene.shading->gooch ? "" : method->refusal(scene.shading->lighting);
   if (!why.empty()) throw InputError(fmt::format("shading {}: {}", method->name, why));
 }
+
+template <int Degree>
+ShadedRay<Degree>::ShadedRay(const Scene& scene)
+    : scene_(scene),
+      scheme_(find_named(catalogue::integral_schemes(), scene.scheme)),
+      clear_(scene.transfer, scene.emission),
+      look_up_(scene.transfer, scene.emission),
+      exact_(scene.transfer, scene.emission),
+      approximate_(scene.transfer, scene.emission) {}
 
 /// Goes over the segments between `borders` and puts what `light_segment(begin, end, parts, sum)` makes of the parts of
 /// the signal in each, those that are not clear, behind the sum.

@@ -51,6 +51,9 @@ class LitView {
   Lighting lighting_;
 };
 
+/// Throws InputError for schemes that cannot be lit, and for methods that they or the lighting cannot have.
+void refuse_unlit(const Scene& scene);
+
 /// A lit ray by the scene's scheme. The normal at a point is the gradient there (central differences at the voxels,
 /// trilinearly interpolated, per world length), normalised; where it is zero only ambient light counts.
 ///
@@ -66,7 +69,7 @@ class LitView {
 template <int Degree>
 class ShadedRay {
  public:
-  /// Throws InputError for schemes that cannot be lit, and for methods that they or the lighting cannot have.
+  /// Of a scene that `refuse_unlit` does not refuse.
   explicit ShadedRay(const Scene& scene);
 
   PixelLight operator()(const PixelRay& pixel, const Chain<Degree>& signal, const Samples<double>& samples,
