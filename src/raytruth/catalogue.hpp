@@ -7,6 +7,8 @@
 #include "raytruth/shading/normal_curve.hpp"
 #include "raytruth/shading/slab_shading.hpp"
 #include "raytruth/signals/signal_kinds.hpp"
+#include "raytruth/tables/partial_pre_integration.hpp"
+#include "raytruth/tables/second_order.hpp"
 #include "raytruth/tables/table_builders.hpp"
 #include "raytruth/transfer/study_transfers.hpp"
 #include "raytruth/volume/gradient.hpp"

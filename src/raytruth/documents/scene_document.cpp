@@ -141,15 +141,13 @@ SceneTable read_table(const JsonReader& json, const std::string& scheme) {
   if (scheme != "order1" && scheme != "order2")
     json.refuse(fmt::format("a table with the scheme {}", scheme), "one with the scheme order1 or order2");
   const bool is_second_order = scheme == "order2";
-  std::vector<std::string_view> names = words(second_order_builder_names);
-  if (!is_second_order) {
-    names.clear();
-    for (const TableBuilder& row : catalogue::table_builders()) names.push_back(row.name);
-  }
+  const auto names =
+      is_second_order ? names_of(catalogue::second_order_builders) : names_of(catalogue::table_builders());
   SceneTable table;
-  if (is_second_order) table.builder = second_order_builder_names[0];
+  if (is_second_order) table.builder = names.front();
   if (const auto builder = json.find("builder")) table.builder = builder->word(names);
-  if (table.builder == second_order_builder_names[2]) {
+  const SecondOrderBuilder* const second_order = find_named(catalogue::second_order_builders, table.builder);
+  if (second_order != nullptr && second_order->takes_iterations) {
     json.only({"builder", "iterations", "size", "format", "filter"});
     table.iterations = static_cast<int>(json.at("iterations").integer(1, most_table_iterations));
   } else {
@@ -158,11 +156,7 @@ SceneTable read_table(const JsonReader& json, const std::string& scheme) {
   const std::size_t largest = is_second_order ? largest_table3_size : largest_table_size;
   table.size = static_cast<std::size_t>(json.at("size").integer(2, static_cast<std::int64_t>(largest)));
   if (const auto format = json.find("format")) {
-    std::vector<std::string_view> names;
-    for (const TableFormat& row : table_formats) names.push_back(row.name);
-    const std::string name = format->word(names);
-    table.format = *std::find_if(table_formats.begin(), table_formats.end(),
-                                 [&](const TableFormat& row) { return row.name == name; });
+    table.format = *find_named(table_formats, format->word(names_of(table_formats)));
   }
   if (const auto filter = json.find("filter")) table.filter = read_word<TableFilter>(*filter, table_filter_names);
   return table;
@@ -203,9 +197,7 @@ void read_lighting(const JsonReader& json, Lighting& lighting) {
   lighting.specular = json.at("specular").number(0);
   lighting.shininess = json.at("shininess").number(1, largest_shininess);
   if (const auto highlight = json.find("highlight")) {
-    std::vector<std::string_view> names;
-    for (const Highlight& row : catalogue::highlights()) names.push_back(row.name);
-    lighting.highlight = find_named(catalogue::highlights(), highlight->word(names));
+    lighting.highlight = find_named(catalogue::highlights(), highlight->word(names_of(catalogue::highlights())));
   }
   constexpr std::array<std::string_view, 3> treatments{"clamp", "mirror", "none"};
   if (const auto negative = json.find("negative")) lighting.negative = read_word<Negative>(*negative, treatments);

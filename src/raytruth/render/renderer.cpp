@@ -52,9 +52,7 @@ PixelRendererFactory factory_of(const PreparedScene& prepared) {
 }  // namespace
 
 PreparedScene::PreparedScene(Scene its_scene)
-    : scene(std::move(its_scene)),
-      view(scene.camera, scene.grid.spacing),
-      field(ray_field(scene.grid, scene.field)) {
+    : scene(std::move(its_scene)), view(scene.camera, scene.grid.spacing), field(ray_field(scene.grid, scene.field)) {
   refuse_far_cameras(scene, view);
   // A longer step makes the same samples, both ends of the ray, but numbers that nobody can calculate with.
   if (scene.step) scene.step = std::min(*scene.step, 2 * diagonal(scene.grid));

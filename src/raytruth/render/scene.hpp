@@ -26,14 +26,10 @@ enum class TableFilter { nearest, linear };
 
 inline constexpr std::array<std::string_view, 2> table_filter_names{"nearest", "linear"};
 
-/// Of tables of second order: every entry exactly, by as many steps as Nyquist's theorem asks for, or by `iterations`.
-inline constexpr std::array<std::string_view, 3> second_order_builder_names{
-    "second_order_exact", "second_order_nyquist", "second_order_iterations"};
-
 /// A pre-integration table from which the slabs of `order1`, or `order2`, are read.
 struct SceneTable {
-  std::string builder = "exact";  ///< of catalogue::table_builders, or of second_order_builder_names
-  int iterations = 64;            ///< of second_order_iterations
+  std::string builder = "exact";  ///< of catalogue::table_builders, or of catalogue::second_order_builders
+  int iterations = 64;            ///< of a builder that takes them
   std::size_t size = 256;
   TableFormat format = table_formats[1];
   TableFilter filter = TableFilter::linear;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "raytruth/core/named.hpp"
 #include "raytruth/rules/rules.hpp"
 #include "raytruth/transfer/piecewise_linear.hpp"
 
@@ -43,5 +44,13 @@ class PsiTable {
 
 /// The slab between two optics from its psi; colour and opacity.
 Rules<double>::vec4 partially_pre_integrated_slab(const Optics& front, const Optics& back, double length, double psi);
+
+namespace catalogue {
+
+/// The table of psi, over two optical depths.
+inline constexpr Named psi_builder{"partial_pre_integration",
+                                   "psi of Moreland and Angel 2004, over the optical depths of both ends"};
+
+}  // namespace catalogue
 
 }  // namespace raytruth

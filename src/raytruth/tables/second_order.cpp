@@ -1,8 +1,8 @@
 #include "raytruth/tables/second_order.hpp"
 
+#include "raytruth/kernels/slab_kernels.hpp"
 #include "raytruth/schemes/slab_integrals.hpp"
 #include "raytruth/tables/fast_second_order.hpp"
-#include "raytruth/kernels/slab_kernels.hpp"
 
 #include <tbb/parallel_for.h>
 

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <variant>
 
 namespace raytruth {
@@ -70,5 +71,29 @@ PiecewiseLinear clamped(const PiecewiseLinear& transfer, double low, double high
 /// binary32: errors of some 1e-6.
 Table3<float> second_order_table(const PiecewiseLinear& transfer, const TableAxes& axes, Emission emission,
                                  const SecondOrderMethod& method);
+
+/// A way to a table over three scalars: a row of the list below.
+struct SecondOrderBuilder {
+  std::string_view name;
+  std::string_view summary;
+  std::string_view source;
+  bool takes_iterations;  ///< else `method` leaves its argument alone
+  SecondOrderMethod (*method)(int iterations);
+};
+
+namespace catalogue {
+
+inline constexpr std::array second_order_builders{
+    SecondOrderBuilder{"second_order_exact",
+                       "slabs of parabolas, over front, middle and back scalar: every entry exactly", "this project",
+                       false, [](int /*iterations*/) -> SecondOrderMethod { return Ideal{}; }},
+    SecondOrderBuilder{"second_order_nyquist", "the same by as many steps as Nyquist's theorem asks for",
+                       "El Hajjar 2008, section 7", false,
+                       [](int /*iterations*/) -> SecondOrderMethod { return NyquistIterations{}; }},
+    SecondOrderBuilder{"second_order_iterations", "the same by \"iterations\" steps", "El Hajjar 2008, section 7", true,
+                       [](int iterations) -> SecondOrderMethod { return Iterations{iterations}; }},
+};
+
+}  // namespace catalogue
 
 }  // namespace raytruth

@@ -142,16 +142,12 @@ TableAxes table_axes(const Scene& scene) {
 /// Of second order; of 4 numbers for every entry in binary32.
 Table3<float> second_order_table_of(const Scene& scene) {
   const SceneTable& asked = *scene.table;
-  Table3<float> table;
-  if (asked.builder == second_order_builder_names[0])
-    table = second_order_table(scene.transfer, table_axes(scene), scene.emission, Ideal{});
-  else if (asked.builder == second_order_builder_names[1])
-    table = second_order_table(scene.transfer, table_axes(scene), scene.emission, NyquistIterations{});
-  else if (asked.builder == second_order_builder_names[2])
-    table = second_order_table(scene.transfer, table_axes(scene), scene.emission, Iterations{asked.iterations});
-  else
+  const SecondOrderBuilder* const builder = find_named(catalogue::second_order_builders, asked.builder);
+  if (builder == nullptr)
     throw InputError(fmt::format("table builder {} with the scheme order2; {} are allowed", asked.builder,
-                                 fmt::join(second_order_builder_names, ", ")));
+                                 fmt::join(names_of(catalogue::second_order_builders), ", ")));
+  Table3<float> table =
+      second_order_table(scene.transfer, table_axes(scene), scene.emission, builder->method(asked.iterations));
   for (float& number : table.values) number = static_cast<float>(stored(asked.format, number));
   return table;
 }

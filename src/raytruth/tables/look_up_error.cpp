@@ -1,0 +1,151 @@
+#include "raytruth/tables/look_up_error.hpp"
+
+#include "raytruth/core/random.hpp"
+#include "raytruth/shading/slab_reference.hpp"
+#include "raytruth/tables/second_order.hpp"
+#include "raytruth/tables/table_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace raytruth {
+
+namespace {
+
+using Vec4 = Rules<double>::vec4;
+
+constexpr std::size_t cells_judged = 32;  ///< along each axis
+constexpr std::uint64_t places_judged = 4096;
+constexpr std::uint64_t weighted_places_judged = 256;  // each is proven by itself, in milliseconds
+constexpr std::uint64_t seed = 1;                      ///< of the places
+
+/// Errors at random places, collected one by one.
+class ErrorsAtPlaces {
+ public:
+  void add(const Vec4& found, const Vec4& truth, double radius) {
+    const Vec4 error = (found - truth).abs();
+    largest_ = std::max(largest_, error.maxCoeff());
+    sum_ += error.mean();
+    sum_of_squares_ += error.square().mean();
+    radius_ = std::max(radius_, radius);
+    ++count_;
+  }
+  [[nodiscard]] LookUpError summary(std::string_view look_up) const {
+    const auto count = static_cast<double>(count_);
+    return {.look_up = look_up,
+            .max = largest_,
+            .mean = sum_ / count,
+            .root_mean_square = std::sqrt(sum_of_squares_ / count),
+            .places = count_,
+            .radius = radius_};
+  }
+
+ private:
+  double largest_ = 0;
+  double sum_ = 0;
+  double sum_of_squares_ = 0;
+  double radius_ = 0;
+  std::uint64_t count_ = 0;
+};
+
+template <std::size_t Count>
+std::array<double, Count> random_scalars(const TableAxes& axes, std::uint64_t place) {
+  const auto random = random_numbers(seed, RandomStream::points, place);
+  std::array<double, Count> scalars{};
+  for (std::size_t axis = 0; axis < Count; ++axis) scalars[axis] = axes.low + random[axis] * (axes.high - axes.low);
+  return scalars;
+}
+
+Vec4 in_format(const TableFormat& format, const Vec4& entry) {
+  return entry.unaryExpr([&](double value) { return stored(format, value); });
+}
+
+}  // namespace
+
+LookUpError second_order_look_up_error(const Table3<float>& table, const PiecewiseLinear& transfer,
+                                       const TableAxes& axes, Emission emission, const TableFormat& format) {
+  SecondOrderSlabs slabs(transfer, axes, emission);
+  ErrorsAtPlaces errors;
+  for (std::uint64_t i = 0; i < places_judged; ++i) {
+    const auto scalars = random_scalars<3>(axes, i);
+    const Certified truth = slabs.certified(scalars);
+    const Vec4 found = trilinear<double>(
+        axes,
+        [&](std::size_t front, std::size_t middle, std::size_t back) -> Vec4 {
+          return in_format(format, table.at(front, middle, back).cast<double>());
+        },
+        scalars);
+    errors.add(found, truth.rgba(), truth.radius);
+  }
+  return errors.summary("trilinear");
+}
+
+namespace {
+
+/// A slab's weighted light in RGB and its opacity, by ball arithmetic: as the diffuse light of a surface whose cosine
+/// is the weight. The tent is 1 - |2 x - 1|, light without shading less that of a surface lit from both sides.
+CertifiedRadiance weighted_light(const ShadedSlab& slab, const PiecewiseLinear& transfer, Emission emission,
+                                 LightWeight weight) {
+  Cubic cosine{1, 0, 0, 0};
+  if (weight == LightWeight::to_front) cosine = {1, -1, 0, 0};
+  if (weight == LightWeight::x) cosine = {0, 1, 0, 0};
+  if (weight == LightWeight::x_squared) cosine = {0, 0, 1, 0};
+  if (weight == LightWeight::x_cubed) cosine = {0, 0, 0, 1};
+  if (weight == LightWeight::tent) cosine = {-1, 2, 0, 0};
+  const Lighting lighting{
+      .ambient = 1, .diffuse = 1, .negative = weight == LightWeight::tent ? Negative::mirror : Negative::none};
+  CertifiedRadiance light = cubic_reference(slab, transfer, emission, lighting, cosine, {1, 0, 0, 0});
+  if (weight == LightWeight::tent) {
+    light.diffuse = light.ambient - light.diffuse;
+    light.radius *= 2;
+  }
+  return light;
+}
+
+}  // namespace
+
+LookUpError weighted_look_up_error(const Table<double>& table, const TableContent& content,
+                                   const PiecewiseLinear& transfer, Emission emission, const TableFormat& format) {
+  const TableAxes& axes = table.axes;
+  std::vector<TransferPoint> points = transfer.points();
+  for (TransferPoint& point : points) point.optics.color = {1, 1, 1};
+  const PiecewiseLinear white(std::move(points));
+  ErrorsAtPlaces errors;
+  for (std::uint64_t i = 0; i < weighted_places_judged; ++i) {
+    const auto scalars = random_scalars<2>(axes, i);
+    const ShadedSlab slab{.front = scalars[0], .back = scalars[1], .length = axes.length};
+    const auto light = weighted_light(slab, content.is_white ? white : transfer, emission, content.weight);
+    Vec4 truth(light.diffuse[0], light.diffuse[1], light.diffuse[2], light.opacity);
+    double radius = light.radius;
+    if (content.has_white_as_alpha) {
+      const auto of_white = weighted_light(slab, white, emission, content.weight);
+      truth[3] = of_white.diffuse[0];
+      radius = std::max(radius, of_white.radius);
+    }
+    const Vec4 found = bilinear<double>(
+        axes, [&](std::size_t front, std::size_t back) -> Vec4 { return in_format(format, table.at(front, back)); },
+        scalars);
+    errors.add(found, truth, radius);
+  }
+  return errors.summary("bilinear");
+}
+
+LookUpError linear_look_up_error(const Table<double>& table, const PiecewiseLinear& transfer, Emission emission,
+                                 const TableFormat& format) {
+  const CertifiedCells truth = certified_cells(transfer, table.axes, emission, cells_judged, seed);
+  const TableError error = bilinear_error(
+      truth, [&](const CertifiedCell& /*cell*/, std::size_t front, std::size_t back) { return table.at(front, back); },
+      format);
+  return {.look_up = "bilinear",
+          .max = error.max,
+          .max_at = std::array{error.front, error.back},
+          .mean = error.mean,
+          .root_mean_square = error.root_mean_square,
+          .band_max = error.band_max,
+          .places = truth.cells.size() * places_per_axis * places_per_axis,
+          .radius = truth.radius};
+}
+
+}  // namespace raytruth

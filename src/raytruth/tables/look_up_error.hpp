@@ -1,0 +1,42 @@
+#pragma once
+
+#include "raytruth/tables/look_up.hpp"
+#include "raytruth/tables/table.hpp"
+#include "raytruth/tables/table3.hpp"
+#include "raytruth/tables/table_builder.hpp"
+#include "raytruth/transfer/emission.hpp"
+#include "raytruth/transfer/piecewise_linear.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace raytruth {
+
+/// How far look-ups in a table, its numbers rounded to a format, are from certified slabs, off its nodes: all channels,
+/// magnitudes.
+struct LookUpError {
+  std::string_view look_up;  ///< bilinear or trilinear
+  double max = 0;
+  std::optional<std::array<double, 2>> max_at = {};  ///< front and back scalar there
+  double mean = 0;
+  double root_mean_square = 0;
+  std::optional<double> band_max = {};  ///< the largest one beside the diagonal
+  std::uint64_t places = 0;             ///< looked at
+  double radius = 0;                    ///< of the certified slabs: a bound on the errors' error
+};
+
+/// Of a table of slabs, by cells of its grid.
+LookUpError linear_look_up_error(const Table<double>& table, const PiecewiseLinear& transfer, Emission emission,
+                                 const TableFormat& format);
+
+/// Of a table of weighted light, at random places, each by ball arithmetic.
+LookUpError weighted_look_up_error(const Table<double>& table, const TableContent& content,
+                                   const PiecewiseLinear& transfer, Emission emission, const TableFormat& format);
+
+/// Of a table over three scalars, at random places.
+LookUpError second_order_look_up_error(const Table3<float>& table, const PiecewiseLinear& transfer,
+                                       const TableAxes& axes, Emission emission, const TableFormat& format);
+
+}  // namespace raytruth
