@@ -1,7 +1,7 @@
 #include "experiments/experiment_folder.hpp"
 #include "experiments/measure.hpp"
 #include "experiments/output.hpp"
-#include "program/commands.hpp"
+#include "program/command.hpp"
 #include "raytruth/catalogue.hpp"
 #include "raytruth/core/named.hpp"
 #include "raytruth/shading/slab_shading.hpp"
@@ -15,6 +15,11 @@
 namespace raytruth {
 
 namespace {
+
+struct ListOptions {
+  std::string kind;  ///< empty: all
+  bool json = false;
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -75,8 +80,6 @@ std::string text_of(const std::string& kind) {
   return text;
 }
 
-}  // namespace
-
 const std::vector<std::string>& listed_kinds() {
   static const std::vector<std::string> kinds{"signals",  "fields",   "transfers", "samplings",  "schemes",
                                               "measures", "shadings", "tables",    "experiments"};
@@ -94,5 +97,21 @@ int list_ingredients(const ListOptions& options) {
     print(text_of(kind));
   return 0;
 }
+
+std::function<int()> describe(CommandOptions& add) {
+  const auto options = std::make_shared<ListOptions>();
+  add.optional_operand("kind", options->kind, listed_kinds(), "Of what (default: everything)");
+  add.flag("--json", options->json, "As JSON");
+  return [options] { return list_ingredients(*options); };
+}
+
+}  // namespace
+
+extern const Command list_command;
+const Command list_command{.name = "list",
+                           .summary = "List what there is",
+                           .example = "raytruth list schemes --json",
+                           .notes = "",
+                           .describe = describe};
 
 }  // namespace raytruth

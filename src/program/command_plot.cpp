@@ -2,7 +2,7 @@
 #include "experiments/python.hpp"
 #include "experiments/result.hpp"
 #include "experiments/texts.hpp"
-#include "program/commands.hpp"
+#include "program/command.hpp"
 
 #include <fmt/format.h>
 
@@ -12,6 +12,12 @@
 namespace raytruth {
 
 namespace {
+
+struct PlotOptions {
+  std::vector<std::string> results;
+  std::string folder = ".";
+  std::string format = "svg";
+};
 
 void require_matplotlib() {
   const auto outcome = run_python("import matplotlib", {});
@@ -29,8 +35,6 @@ void plot_result(const std::filesystem::path& result, const std::filesystem::pat
   throw InputError(fmt::format("{}: cannot be plotted: {}", result.string(), outcome.last_error));
 }
 
-}  // namespace
-
 int plot_results(const PlotOptions& options) {
   for (const std::string& path : options.results) read_result(path).at("experiment").at("plot").members();
   require_matplotlib();
@@ -42,5 +46,22 @@ int plot_results(const PlotOptions& options) {
   }
   return 0;
 }
+
+std::function<int()> describe(CommandOptions& add) {
+  const auto options = std::make_shared<PlotOptions>();
+  add.operands("result", options->results, "JSON files");
+  add.text("-o", "DIR", options->folder, "Write NAME.FORMAT into this folder (default: the current one)");
+  add.word("--format", options->format, {"svg", "png", "pdf"}, "svg (default), png or pdf");
+  return [options] { return plot_results(*options); };
+}
+
+}  // namespace
+
+extern const Command plot_command;
+const Command plot_command{.name = "plot",
+                           .summary = "Draw the plots of results",
+                           .example = "raytruth plot results/xi_adaptive.json -o plots",
+                           .notes = "",
+                           .describe = describe};
 
 }  // namespace raytruth

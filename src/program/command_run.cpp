@@ -1,7 +1,7 @@
 #include "experiments/output.hpp"
 #include "experiments/result.hpp"
 #include "experiments/runner.hpp"
-#include "program/commands.hpp"
+#include "program/command.hpp"
 #include "program/progress_bar.hpp"
 #include "raytruth/volume/files/find_volume.hpp"
 
@@ -15,6 +15,18 @@
 namespace raytruth {
 
 namespace {
+
+struct RunOptions {
+  std::vector<std::string> experiments;
+  std::optional<std::string> folder;
+  int threads = 0;  ///< 0: all cores
+  std::string profile = "full";
+  std::optional<std::int64_t> seed;
+  std::optional<std::string> gl;
+  bool check = false;
+  bool resume = false;
+  std::string data;
+};
 
 /// A bar of what is done.
 class BarObserver final : public RunObserver {
@@ -43,8 +55,6 @@ void refuse_overwriting(const std::string& experiment, const std::filesystem::pa
     throw InputError(
         fmt::format("{}: found the experiment where its result would go; another folder is allowed", result.string()));
 }
-
-}  // namespace
 
 int run_experiments(const RunOptions& options) {
   if (!options.folder && options.experiments.size() > 1)
@@ -83,5 +93,29 @@ int run_experiments(const RunOptions& options) {
   }
   return options.check && !all_hold ? 1 : 0;
 }
+
+std::function<int()> describe(CommandOptions& add) {
+  const auto options = std::make_shared<RunOptions>();
+  add.operands("experiment", options->experiments, "JSON files; '-' is standard input");
+  add.text("-o", "DIR", options->folder, "Write NAME.json into this folder (default: to standard output)");
+  add.threads(options->threads);
+  add.word("--profile", options->profile, {"quick", "full"}, "quick: a smaller version, in seconds (default: full)");
+  add.seed(options->seed, "Instead of the experiment's");
+  add.word("--gl", options->gl, {"osmesa", "egl"},
+           "Run shaders by osmesa or by egl, a GPU's driver (default: the experiment's)");
+  add.flag("--check", options->check, "Exit with 1 if a bound that the experiment states does not hold");
+  add.flag("--resume", options->resume, "Finish an interrupted run; needs -o");
+  add.data(options->data);
+  return [options] { return run_experiments(*options); };
+}
+
+}  // namespace
+
+extern const Command run_command;
+const Command run_command{.name = "run",
+                          .summary = "Run experiments",
+                          .example = "raytruth run experiments/xi_adaptive.json -o out --profile quick",
+                          .notes = "",
+                          .describe = describe};
 
 }  // namespace raytruth
