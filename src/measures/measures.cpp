@@ -4,8 +4,14 @@
 
 namespace raytruth {
 
+extern const Measure cell_cubic;
+extern const Measure frequency_responses;
+extern const Measure minmax_bounds;
+extern const Measure orders;
+extern const Measure signal_error;
 extern const Measure table_pareto;
 extern const Measure turning_points;
+extern const Measure virtual_samples;
 
 namespace {
 
@@ -63,24 +69,6 @@ Measure old(const Legacy& legacy) {
 }
 
 }  // namespace
-
-std::vector<Column> signal_error_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> signal_error_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> cell_cubic_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> cell_cubic_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> orders_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> orders_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> virtual_samples_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> virtual_samples_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> frequency_response_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> frequency_response_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> minmax_bounds_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> minmax_bounds_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
 std::vector<Column> integral_orders_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> integral_orders_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
@@ -190,24 +178,6 @@ std::vector<Row> optimal_table_rows(const Experiment& experiment, const JsonRead
 std::vector<Row> optimal_table_conclusions(const Experiment& experiment, const JsonReader& json,
                                            const std::vector<Row>& rows_of_fields);
 
-const Measure signal_error =
-    old(Legacy{"signal_error", "xi and xi_max of every scheme along random rays: quantiles, and ratios between schemes",
-               true, signal_error_columns, signal_error_rows});
-const Measure cell_cubic = old(
-    Legacy{"cell_cubic", "whether a trilinear ray is a cubic inside each cell, and how its slope jumps between cells",
-           true, cell_cubic_columns, cell_cubic_rows});
-const Measure orders =
-    old(Legacy{"orders", "fitted orders of xi and xi_max, refined inside cells and at constant steps across them", true,
-               orders_columns, orders_rows});
-const Measure virtual_samples =
-    old(Legacy{"virtual_samples", "RMSE, maximum and PSNR of virtual samples, and of fewer or trilinear ones", true,
-               virtual_samples_columns, virtual_samples_rows});
-const Measure frequency_response = old(
-    Legacy{"frequency_response", "Fourier transforms of the B-spline and of virtual samples, closed form and measured",
-           false, frequency_response_columns, frequency_response_rows});
-const Measure minmax_bounds =
-    old(Legacy{"minmax_bounds", "how far virtual samples leave the range of their data and of the block they lie in",
-               false, minmax_bounds_columns, minmax_bounds_rows});
 const Measure integral_orders =
     old(Legacy{"integral_orders", "fitted orders of colour and opacity, refined inside cells and at constant steps",
                true, integral_orders_columns, integral_orders_rows});
@@ -315,7 +285,7 @@ std::span<const Measure* const> measures() {
       &turning_points,
       &orders,
       &virtual_samples,
-      &frequency_response,
+      &frequency_responses,
       &minmax_bounds,
       &integral_orders,
       &work_precision,
