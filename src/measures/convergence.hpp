@@ -1,7 +1,6 @@
 #pragma once
 
 #include "experiments/columns.hpp"
-#include "experiments/row.hpp"
 #include "raytruth/core/chain.hpp"
 #include "raytruth/schemes/samples.hpp"
 #include "raytruth/statistics/order.hpp"
@@ -52,12 +51,6 @@ struct ShownOrder {
 /// `order_NAME` and its residual and finest step. `errors` is the column that the fit is of.
 Columns<ShownOrder> shown_order_columns(const std::string& name, const std::string& errors);
 
-/// Keys of the rows: `regime`, `scheme`, `part` (point or fit), `step`.
-std::vector<Column> convergence_columns();
-
-/// What the fit of a quantity says: `order_NAME` and its residual and finest step. `errors` is the column it fits.
-std::vector<Column> order_columns(const std::string& name, const std::string& errors);
-
 /// Errors by level, and how far each may be off.
 struct LevelError {
   double error = 0;
@@ -66,7 +59,5 @@ struct LevelError {
 
 /// By level.
 ShownOrder shown_order(std::span<const LevelError> levels);
-
-void add_order(Row& row, const std::string& name, std::span<const LevelError> levels);
 
 }  // namespace raytruth

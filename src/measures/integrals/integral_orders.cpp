@@ -107,7 +107,7 @@ void add_records(const TransferKeys& transfer, ConvergenceKeys keys, const Conve
   add().orders = {.opacity = order_of(convergence, rms_opacity), .color = order_of(convergence, rms_color)};
 }
 
-Columns<StepErrors> error_columns() {
+Columns<StepErrors> step_error_columns() {
   return {
       {.name = "opacity_rms",
        .description = "root mean square of the opacity's error over rays",
@@ -127,7 +127,7 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
   Columns<Record> columns;
   append_part(columns, &Record::transfer, transfer_key_columns());
   append_part(columns, &Record::keys, convergence_key_columns());
-  append_part(columns, &Record::errors, error_columns());
+  append_part(columns, &Record::errors, step_error_columns());
   Columns<Orders> of_orders;
   append_part(of_orders, &Orders::opacity, shown_order_columns("opacity", "opacity_rms"));
   append_part(of_orders, &Orders::color, shown_order_columns("color", "color_rms"));
