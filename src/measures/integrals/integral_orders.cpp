@@ -76,9 +76,9 @@ struct Orders {
 struct Record {
   TransferKeys transfer;
   ConvergenceKeys keys;
-  std::optional<StepErrors> errors;
-  std::optional<Orders> orders;
-  std::optional<std::string> refusal;
+  std::optional<StepErrors> errors = {};
+  std::optional<Orders> orders = {};
+  std::optional<std::string> refusal = {};
 };
 
 ShownOrder order_of(const Convergence& convergence, double (*rms)(const RayErrors&)) {
@@ -91,9 +91,7 @@ ShownOrder order_of(const Convergence& convergence, double (*rms)(const RayError
 /// The errors at every step, and the orders; or why there are none.
 void add_records(const TransferKeys& transfer, ConvergenceKeys keys, const Convergence& convergence,
                  std::vector<Record>& records) {
-  const auto add = [&]() -> Record& {
-    return records.emplace_back(Record{.transfer = transfer, .keys = keys, .errors = {}, .orders = {}, .refusal = {}});
-  };
+  const auto add = [&]() -> Record& { return records.emplace_back(Record{.transfer = transfer, .keys = keys}); };
   if (!convergence.refusal.empty()) {
     add().refusal = std::string(convergence.refusal);
     return;

@@ -61,17 +61,13 @@ struct Record {
   std::int64_t violations = 0;
   double difference_max = 0;
   std::int64_t not_converged = 0;
-  ShownQuantiles radius;
+  ShownQuantiles radius = {};
   double radius_max = 0;
   double arb_radius_max = 0;
 };
 
 Record summary_of(std::int64_t block, std::string_view signal, Emission emission, const std::vector<Comparison>& all) {
-  Record record{.block = block,
-                .signal = signal,
-                .emission = emission,
-                .cases = static_cast<std::int64_t>(all.size()),
-                .radius = {}};
+  Record record{.block = block, .signal = signal, .emission = emission, .cases = static_cast<std::int64_t>(all.size())};
   std::vector<double> radii;
   for (const Comparison& one : all) {
     radii.push_back(one.reference.radius);

@@ -124,10 +124,10 @@ struct Record {
   TransferKeys transfer;
   Sampling sampling;
   std::string scheme;
-  std::optional<WorkErrors> work;
-  std::optional<bool> is_on_opacity_front;  ///< none: of what cannot be compared
-  std::optional<bool> is_on_color_front;
-  std::optional<std::string> refusal;
+  std::optional<WorkErrors> work = {};
+  std::optional<bool> is_on_opacity_front = {};  ///< none: of what cannot be compared
+  std::optional<bool> is_on_color_front = {};
+  std::optional<std::string> refusal = {};
 };
 
 /// Marks the records from `begin` on that no other of them beats in voxels read and error alike.
@@ -223,11 +223,7 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
         const Work& work = works[scheme];
         Record& record = records.emplace_back(Record{.transfer = {transfer.name, experiment.emission},
                                                      .sampling = sampling,
-                                                     .scheme = experiment.schemes[scheme],
-                                                     .work = {},
-                                                     .is_on_opacity_front = {},
-                                                     .is_on_color_front = {},
-                                                     .refusal = {}});
+                                                     .scheme = experiment.schemes[scheme]});
         if (work.refusal.empty())
           record.work = work_errors(experiment, work, first < works.size() ? works[first] : Work{});
         else

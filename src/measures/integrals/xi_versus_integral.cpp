@@ -110,9 +110,9 @@ struct Record {
   TransferKeys transfer;
   Sampling sampling;
   RayCounts rays;
-  std::optional<AcrossRays> across_rays;
+  std::optional<AcrossRays> across_rays = {};
   double radius = 0;
-  std::optional<AcrossSchemes> across_schemes;
+  std::optional<AcrossSchemes> across_schemes = {};
 };
 
 /// NAME and the ends of its interval.
@@ -187,9 +187,7 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
       const Record known{.transfer = {transfer.name, experiment.emission},
                          .sampling = sampling,
                          .rays = ray_counts(experiment, studied),
-                         .across_rays = {},
-                         .radius = radius,
-                         .across_schemes = {}};
+                         .radius = radius};
       for (std::size_t scheme = 0; scheme < experiment.schemes.size(); ++scheme)
         records.emplace_back(known).across_rays = {.scheme = experiment.schemes[scheme],
                                                    .opacity = across_rays(trials, scheme, &Trial::opacity),

@@ -66,7 +66,7 @@ struct Record {
   double value_error = 0;
   double cubic_term = 0;
   double value_jump = 0;
-  ShownQuantiles slope_jumps;
+  ShownQuantiles slope_jumps = {};
 };
 
 Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
@@ -100,7 +100,7 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
                           experiment.seed, ray);
   });
 
-  Record record{.rays = experiment.rays.count, .slope_jumps = {}};
+  Record record{.rays = experiment.rays.count};
   std::vector<double> slope_jumps;
   for (const RayFindings& ray : rays) {
     record.cells += ray.cells;

@@ -130,16 +130,16 @@ struct AgainstClosedForm {
 struct Summary {
   Peak from_half;
   Peak from_one;
-  std::optional<Differences> differences;  ///< none: of true samples
+  std::optional<Differences> differences = {};  ///< none: of true samples
   double radius = 0;
-  std::optional<AgainstClosedForm> against_closed_form;  ///< none: of the closed form
+  std::optional<AgainstClosedForm> against_closed_form = {};  ///< none: of the closed form
 };
 
 struct Record {
   ReconstructionPath path;
   int samples_per_voxel = 0;  ///< 0: closed form
-  std::optional<Summary> summary;
-  std::optional<CurvePoint> point;
+  std::optional<Summary> summary = {};
+  std::optional<CurvePoint> point = {};
 };
 
 void add_curve(std::vector<Record>& records, const Spectrum& spectrum) {
@@ -147,7 +147,6 @@ void add_curve(std::vector<Record>& records, const Spectrum& spectrum) {
     records.push_back(
         {.path = spectrum.path,
          .samples_per_voxel = spectrum.samples_per_voxel,
-         .summary = {},
          .point = CurvePoint{frequency_at(static_cast<int>(i)), std::abs(spectrum.response[i]), spectrum.radius}});
 }
 
@@ -155,9 +154,7 @@ Summary summary_of(const Spectrum& spectrum, const Spectrum& closed, const Spect
   const auto amplitude = [&](std::size_t i) { return std::abs(spectrum.response[i]); };
   Summary summary{.from_half = find_peak(0.5, cycles, amplitude),
                   .from_one = find_peak(1, cycles, amplitude),
-                  .differences = {},
-                  .radius = spectrum.radius,
-                  .against_closed_form = {}};
+                  .radius = spectrum.radius};
   if (spectrum.path.virtual_phase)
     summary.differences = {.pass = largest_difference(spectrum, true_samples, 0, 0.5),
                            .transition = largest_difference(spectrum, true_samples, 0.5, 1),
@@ -299,10 +296,8 @@ std::vector<Record> records(const Experiment& /*experiment*/, const Options& opt
         const Spectrum closed = closed_spectrum(path);
         const Spectrum spectrum = way == 0 ? closed : measured_spectrum(path, way);
         if (!phase) true_samples = spectrum;
-        records.push_back({.path = path,
-                           .samples_per_voxel = way,
-                           .summary = summary_of(spectrum, closed, *true_samples),
-                           .point = {}});
+        records.push_back(
+            {.path = path, .samples_per_voxel = way, .summary = summary_of(spectrum, closed, *true_samples)});
         add_curve(curves, spectrum);
       }
     }

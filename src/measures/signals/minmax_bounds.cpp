@@ -71,27 +71,19 @@ struct Record {
   std::string part;
   std::string data;
   std::string curve;
-  std::optional<double> step;        ///< none: any
-  std::optional<std::int64_t> rays;  ///< none: proved, not searched
-  std::optional<Excess> excess;
-  std::optional<Block> block;
-  std::optional<Growth> growth;
-  std::optional<SafeGrowth> safe_growth;
+  std::optional<double> step = {};        ///< none: any
+  std::optional<std::int64_t> rays = {};  ///< none: proved, not searched
+  std::optional<Excess> excess = {};
+  std::optional<Block> block = {};
+  std::optional<Growth> growth = {};
+  std::optional<SafeGrowth> safe_growth = {};
 };
 
 /// Samples alone, whatever they are made from. In units of the data's range the block holds [1 - block_range, 1].
 void add_samples(std::vector<Record>& records, const Options& options) {
   const std::pair<double, double> unit{0, 1};
   const auto add = [&records](const char* part, const std::string& data, double block_range, double overshoot) {
-    records.push_back({.part = part,
-                       .data = data,
-                       .curve = "any step",
-                       .step = {},
-                       .rays = {},
-                       .excess = Excess{block_range, overshoot, {}},
-                       .block = {},
-                       .growth = {},
-                       .safe_growth = {}});
+    records.push_back({.part = part, .data = data, .curve = "any step", .excess = Excess{block_range, overshoot, {}}});
   };
   add("samples", "four samples in the block", 1, largest_virtual_sample(unit, unit) - 1);
   add("samples", "first interval, with ghost", 1, largest_first_virtual_sample(unit) - 1);
@@ -112,10 +104,7 @@ void add_reconstructions(std::vector<Record>& records, const Options& options, s
                          .curve = fmt::format("step {}", step),
                          .step = step,
                          .rays = options.rays,
-                         .excess = Excess{1, found.of_virtual_samples, found.of_true_samples},
-                         .block = {},
-                         .growth = {},
-                         .safe_growth = {}});
+                         .excess = Excess{1, found.of_virtual_samples, found.of_true_samples}});
     }
 }
 
@@ -140,10 +129,7 @@ void add_growths(std::vector<Record>& records, const Options& options, std::uint
                                              .curve = fmt::format("step {}, block of {}", step, name),
                                              .step = step,
                                              .rays = options.rays,
-                                             .excess = {},
-                                             .block = Block{name, size, found.samples},
-                                             .growth = {},
-                                             .safe_growth = {}});
+                                             .block = Block{name, size, found.samples}});
         };
         add("safe growth").safe_growth = safe_growth_of(found, proven_growth(region, step));
         for (std::size_t growth = 0; growth < growths; ++growth)

@@ -72,15 +72,15 @@ ShownOrder order_of(const std::array<double, level_count>& errors, double radius
 
 /// xi or xi_max: at a step, or the order that all steps show.
 struct Finding {
-  std::optional<LevelError> mean;
-  std::optional<ShownOrder> order;
+  std::optional<LevelError> mean = {};
+  std::optional<ShownOrder> order = {};
 };
 
 struct Record {
   ConvergenceKeys keys;
-  Finding xi;
-  Finding xi_max;
-  std::optional<std::string> refusal;
+  Finding xi = {};
+  Finding xi_max = {};
+  std::optional<std::string> refusal = {};
 };
 
 Columns<Finding> finding_columns(const std::string& symbol, const std::string& unit) {
@@ -120,19 +120,17 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
         Samples<double> samples;
         if (regime == Regime::constant) samples.step = 1;
         if (const std::string_view why = refusal<S>(samples); !why.empty()) {
-          records.push_back({.keys = keys({}), .xi = {}, .xi_max = {}, .refusal = std::string(why)});
+          records.push_back({.keys = keys({}), .refusal = std::string(why)});
           return;
         }
         const Means means = measure_means<S>(experiment, field, regime);
         for (std::size_t level = 0; level < level_count; ++level)
           records.push_back({.keys = keys(step_of(level)),
-                             .xi = {.mean = LevelError{means.xi[level], radius}, .order = {}},
-                             .xi_max = {.mean = LevelError{means.xi_max[level], signal_radius}, .order = {}},
-                             .refusal = {}});
+                             .xi = {.mean = LevelError{means.xi[level], radius}},
+                             .xi_max = {.mean = LevelError{means.xi_max[level], signal_radius}}});
         records.push_back({.keys = keys({}),
-                           .xi = {.mean = {}, .order = order_of(means.xi, radius)},
-                           .xi_max = {.mean = {}, .order = order_of(means.xi_max, signal_radius)},
-                           .refusal = {}});
+                           .xi = {.order = order_of(means.xi, radius)},
+                           .xi_max = {.order = order_of(means.xi_max, signal_radius)}});
       });
   return records;
 }

@@ -183,7 +183,7 @@ struct PrintedFigure {
 
 struct PrintedFound {
   PrintedFigure xi;
-  std::optional<PrintedFigure> ratio;
+  std::optional<PrintedFigure> ratio = {};
 };
 
 PrintedFigure printed_among(const std::vector<double>& sorted, double printed) {
@@ -196,12 +196,12 @@ struct Record {
   std::string scheme;
   std::pair<double, double> data_range;
   RayCounts rays;
-  std::optional<double> fetches_mean;
+  std::optional<double> fetches_mean = {};
   double length = 0;              ///< of a ray
   std::vector<double> sorted_xi;  ///< of rays that are not constant
   std::vector<double> sorted_xi_max;
-  std::optional<RatioFound> ratio;
-  std::optional<PrintedFound> printed;
+  std::optional<RatioFound> ratio = {};
+  std::optional<PrintedFound> printed = {};
 };
 
 /// The quantiles of a distribution over rays, and NAME_radius, the bound on their rounding error.
@@ -305,7 +305,7 @@ std::optional<PrintedFound> compare_with_printed(const Options& options, const s
                                                  const std::string& scheme, const Record& record) {
   const auto printed = find_printed(options, scheme, field);
   if (!printed) return std::nullopt;
-  PrintedFound found{.xi = printed_among(record.sorted_xi, *printed), .ratio = {}};
+  PrintedFound found{.xi = printed_among(record.sorted_xi, *printed)};
   if (record.ratio)
     if (const auto numerator = find_printed(options, record.ratio->numerator, field))
       found.ratio = printed_among(record.ratio->ratios.sorted, *numerator / *printed);
@@ -324,12 +324,9 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
                                                    .scheme = scheme,
                                                    .data_range = field.data_range,
                                                    .rays = ray_counts(experiment, fetches.size()),
-                                                   .fetches_mean = {},
                                                    .length = length,
                                                    .sorted_xi = sorted_numbers(error.xi),
-                                                   .sorted_xi_max = sorted_numbers(error.xi_max),
-                                                   .ratio = {},
-                                                   .printed = {}});
+                                                   .sorted_xi_max = sorted_numbers(error.xi_max)});
       if (!fetches.empty()) record.fetches_mean = mean(fetches);
       if (const auto numerator = options.numerator.find(scheme); numerator != options.numerator.end())
         record.ratio = {numerator->second, scheme, measure_ratios(errors.at(numerator->second), error, length)};

@@ -188,10 +188,10 @@ struct Bounded {
 struct Figures {
   std::int64_t samples = 0;
   std::optional<double> rmse;  ///< none where every ray is constant; so the maximum
-  std::optional<double> error_max;
+  std::optional<double> error_max = {};
   double error_radius = 0;
-  std::optional<Bounded> psnr;  ///< none where the RMSE is rounding
-  std::optional<Bounded> rmse_ratio;
+  std::optional<Bounded> psnr = {};  ///< none where the RMSE is rounding
+  std::optional<Bounded> rmse_ratio = {};
 
   [[nodiscard]] std::optional<std::string_view> why_no_psnr() const {
     if (psnr) return std::nullopt;
@@ -201,12 +201,7 @@ struct Figures {
 
 /// `virtual_3` is the error of Cubic x1 + VS x3 at the same samples.
 Figures figures_of(const SampleError& error, const SampleError& virtual_3, double radius) {
-  Figures figures{.samples = error.count,
-                  .rmse = error.rmse(),
-                  .error_max = {},
-                  .error_radius = radius,
-                  .psnr = {},
-                  .rmse_ratio = {}};
+  Figures figures{.samples = error.count, .rmse = error.rmse(), .error_radius = radius};
   if (figures.rmse) figures.error_max = error.maximum;
   const double rmse = figures.rmse.value_or(0);
   if (!(rmse > radius)) return figures;
