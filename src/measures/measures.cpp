@@ -4,6 +4,9 @@
 
 namespace raytruth {
 
+extern const Measure error_waterfall;
+extern const Measure images;
+extern const Measure optimal_table;
 extern const Measure table_pareto;
 extern const Measure turning_points;
 
@@ -18,13 +21,7 @@ struct Legacy {
   std::int64_t (*blocks)(const JsonReader& options) = nullptr;
   std::vector<Row> (*block_rows)(const Experiment&, const JsonReader& options, std::int64_t block) = nullptr;
   bool uses_gl = false;
-  std::vector<Row> (*conclusions)(const Experiment&, const JsonReader& options, const std::vector<Row>& rows) = nullptr;
 };
-
-constexpr Legacy with_conclusions(Legacy measure, decltype(Legacy::conclusions) conclusions) {
-  measure.conclusions = conclusions;
-  return measure;
-}
 
 constexpr Legacy with_gl(Legacy measure) {
   measure.uses_gl = true;
@@ -44,9 +41,9 @@ class LegacyMeasure final : public AskedMeasure {
     return legacy_.block_rows != nullptr ? legacy_.block_rows(experiment, options_, block)
                                          : legacy_.rows(experiment, options_, field);
   }
-  [[nodiscard]] std::vector<Row> conclusions(const Experiment& experiment,
-                                             const std::vector<Row>& rows) const override {
-    return legacy_.conclusions != nullptr ? legacy_.conclusions(experiment, options_, rows) : std::vector<Row>{};
+  [[nodiscard]] std::vector<Row> conclusions(const Experiment& /*experiment*/,
+                                             const std::vector<Row>& /*rows*/) const override {
+    return {};
   }
 
  private:
@@ -176,19 +173,8 @@ std::vector<Row> clamps_rows(const Experiment& experiment, const JsonReader& opt
 std::vector<Column> shading_integrals_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> shading_integrals_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
-std::vector<Column> images_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> images_rows(const Experiment& experiment, const JsonReader& json, const Field& field);
-
 std::vector<Column> costs_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> costs_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> error_waterfall_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> error_waterfall_rows(const Experiment& experiment, const JsonReader& json, const Field& field);
-
-std::vector<Column> optimal_table_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> optimal_table_rows(const Experiment& experiment, const JsonReader& json, const Field& field);
-std::vector<Row> optimal_table_conclusions(const Experiment& experiment, const JsonReader& json,
-                                           const std::vector<Row>& rows_of_fields);
 
 const Measure signal_error =
     old(Legacy{"signal_error", "xi and xi_max of every scheme along random rays: quantiles, and ratios between schemes",
@@ -296,17 +282,8 @@ const Measure second_order_table =
 const Measure partial_pre_integration =
     old(Legacy{"partial_pre_integration", "errors of Moreland's partial pre-integration by the size of its table",
                false, partial_pre_integration_columns, partial_pre_integration_rows});
-const Measure images = old(Legacy{"images", "views of volumes in many ways, against the certified image and each other",
-                                  true, images_columns, images_rows});
 const Measure costs = old(Legacy{"costs", "ratios of times that the benchmarks' reports hold, each of one run", false,
                                  costs_columns, costs_rows});
-const Measure error_waterfall = old(
-    Legacy{"error_waterfall", "what each stage of a renderer adds to an image's error, and what their interaction does",
-           true, error_waterfall_columns, error_waterfall_rows});
-const Measure optimal_table =
-    old(with_conclusions({"optimal_table", "the smallest table that an image needs, and how well it is predicted", true,
-                          optimal_table_columns, optimal_table_rows},
-                         optimal_table_conclusions));
 
 std::span<const Measure* const> measures() {
   static constexpr std::array list{
