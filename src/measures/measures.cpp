@@ -4,11 +4,17 @@
 
 namespace raytruth {
 
+extern const Measure costs;
 extern const Measure error_waterfall;
+extern const Measure gl_functions;
+extern const Measure gl_rays;
+extern const Measure gl_renderer;
 extern const Measure images;
 extern const Measure optimal_table;
 extern const Measure table_pareto;
+extern const Measure table_texture_precision;
 extern const Measure turning_points;
+extern const Measure volume_texture_precision;
 
 namespace {
 
@@ -20,13 +26,7 @@ struct Legacy {
   std::vector<Row> (*rows)(const Experiment&, const JsonReader& options, const Field&);
   std::int64_t (*blocks)(const JsonReader& options) = nullptr;
   std::vector<Row> (*block_rows)(const Experiment&, const JsonReader& options, std::int64_t block) = nullptr;
-  bool uses_gl = false;
 };
-
-constexpr Legacy with_gl(Legacy measure) {
-  measure.uses_gl = true;
-  return measure;
-}
 
 class LegacyMeasure final : public AskedMeasure {
  public:
@@ -53,7 +53,7 @@ class LegacyMeasure final : public AskedMeasure {
 };
 
 Measure old(const Legacy& legacy) {
-  return {legacy.name, legacy.summary, legacy.of_fields, legacy.uses_gl,
+  return {legacy.name, legacy.summary, legacy.of_fields, false,
           [legacy](const Measure& measure, const Experiment& experiment, const JsonReader& options) {
             return std::make_shared<const LegacyMeasure>(measure, legacy, experiment, options);
           }};
@@ -103,23 +103,6 @@ std::vector<Row> conformance_rows(const Experiment& experiment, const JsonReader
 std::vector<Column> reference_proof_columns(const Experiment& experiment, const JsonReader& options);
 std::int64_t reference_proof_blocks(const JsonReader& options);
 std::vector<Row> reference_proof_rows(const Experiment& experiment, const JsonReader& options, std::int64_t block);
-
-std::vector<Column> gl_functions_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> gl_functions_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> gl_rays_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> gl_rays_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> table_texture_precision_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> table_texture_precision_rows(const Experiment& experiment, const JsonReader& options,
-                                              const Field& field);
-
-std::vector<Column> volume_texture_precision_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> volume_texture_precision_rows(const Experiment& experiment, const JsonReader& options,
-                                               const Field& field);
-
-std::vector<Column> gl_renderer_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> gl_renderer_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
 std::vector<Column> table_builds_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> table_builds_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
@@ -172,9 +155,6 @@ std::vector<Row> clamps_rows(const Experiment& experiment, const JsonReader& opt
 
 std::vector<Column> shading_integrals_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> shading_integrals_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> costs_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> costs_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
 const Measure signal_error =
     old(Legacy{"signal_error", "xi and xi_max of every scheme along random rays: quantiles, and ratios between schemes",
@@ -253,21 +233,6 @@ const Measure clamps =
 const Measure shading_integrals =
     old(Legacy{"shading_integrals", "errors of the colour of whole slabs, and the share of slabs a method is best on",
                false, shading_integrals_columns, shading_integrals_rows});
-const Measure gl_functions =
-    old(with_gl({"gl_functions", "local functions in GLSL, binary32, binary64 and 50 digits, each against the next",
-                 false, gl_functions_columns, gl_functions_rows}));
-const Measure gl_rays =
-    old(with_gl({"gl_rays", "errors of rays in a shader: of the method, and of each arithmetic down to GLSL", true,
-                 gl_rays_columns, gl_rays_rows}));
-const Measure table_texture_precision = old(
-    with_gl({"table_texture_precision", "look-ups of transfer functions and tables, by weights and formats of texels",
-             false, table_texture_precision_columns, table_texture_precision_rows}));
-const Measure volume_texture_precision =
-    old(with_gl({"volume_texture_precision", "look-ups of volumes, by weights and formats of texels", true,
-                 volume_texture_precision_columns, volume_texture_precision_rows}));
-const Measure gl_renderer =
-    old(with_gl({"gl_renderer", "images of a hand-written renderer in GLSL, of the CPU, and certified ones", true,
-                 gl_renderer_columns, gl_renderer_rows}));
 const Measure table_resolution =
     old(Legacy{"table_resolution", "errors of look-ups in exact tables against their size, and their orders", false,
                table_resolution_columns, table_resolution_rows});
@@ -282,8 +247,6 @@ const Measure second_order_table =
 const Measure partial_pre_integration =
     old(Legacy{"partial_pre_integration", "errors of Moreland's partial pre-integration by the size of its table",
                false, partial_pre_integration_columns, partial_pre_integration_rows});
-const Measure costs = old(Legacy{"costs", "ratios of times that the benchmarks' reports hold, each of one run", false,
-                                 costs_columns, costs_rows});
 
 std::span<const Measure* const> measures() {
   static constexpr std::array list{
