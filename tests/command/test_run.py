@@ -88,7 +88,8 @@ class Results(ProgramTest):
         done = self.run_program("run", "small.json")
         table = done.stderr.decode().splitlines()
         self.assertEqual(table[0].split(), ["claim", "published", "measured", "verdict"])
-        self.assertEqual(len(table), 4)
+        self.assertEqual(len(table), 5)
+        self.assertEqual(table.pop(), "raytruth: small: 1 of 1 checks hold")
         self.assertTrue(table[1].startswith("figure") and table[1].endswith("reproduced"))
         self.assertEqual(len({line.index(word) for line, word in zip(table, ["verdict", "reproduced", "reproduced", "not"])}), 1)
 
