@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 
 namespace raytruth {
@@ -73,7 +74,12 @@ std::string text_of(const std::string& kind) {
   const Json list = list_of(kind);
   std::size_t width = 0;
   for (const Json& entry : list) width = std::max(width, entry.at("name").get_ref<const std::string&>().size());
-  std::string text = fmt::format("{}{}\n", kind, list.empty() ? ": none" : "");
+  // Where experiments are found depends on the folder that the program runs in.
+  const std::string where =
+      kind == "experiments" && !list.empty()
+          ? ", in " + std::filesystem::path(list.front().at("file").get<std::string>()).parent_path().string()
+          : "";
+  std::string text = fmt::format("{}{}{}\n", kind, where, list.empty() ? ": none" : "");
   for (const Json& entry : list)
     text += fmt::format("  {:<{}}  {}\n", entry.at("name").get<std::string>(), width,
                         entry.at("summary").get<std::string>());
