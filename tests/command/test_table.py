@@ -31,7 +31,7 @@ PSI = {"builder": "partial_pre_integration", "size": 16}
 OPACITY = 1 - math.exp(-2)
 SLAB = [OPACITY, 0.5 * OPACITY, 0.25 * OPACITY, OPACITY]
 
-SCHEMAS = [json.loads((SOURCE / f"experiments/schemas/{name}.json").read_text()) for name in ("table", "case")]
+SCHEMAS = [json.loads((SOURCE / f"experiments/schemas/{name}.json").read_text()) for name in ("table", "case", "names")]
 
 
 def schema_accepts(case):

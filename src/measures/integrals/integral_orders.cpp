@@ -15,10 +15,8 @@ namespace {
 
 struct Options {};
 
-Options read_options(const Experiment& experiment, const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind"});
-  need_schemes(experiment);
-  need_transfers(experiment);
   return {};
 }
 
@@ -153,6 +151,7 @@ extern const Measure integral_orders;
 const Measure integral_orders{
     MeasureDefinition{.name = "integral_orders",
                       .summary = "fitted orders of colour and opacity, refined inside cells and at constant steps",
+                      .needs = {.schemes = true, .transfers = true},
                       .read = read_options,
                       .columns = columns,
                       .of_field = records_of_field}};
