@@ -4,6 +4,14 @@
 
 namespace raytruth {
 
+extern const Measure cone_lobe;
+extern const Measure continuity;
+extern const Measure eta;
+extern const Measure gradient_angles;
+extern const Measure normal_curves;
+extern const Measure shading_integrals;
+extern const Measure slab_shading;
+extern const Measure spheres;
 extern const Measure table_pareto;
 extern const Measure turning_points;
 
@@ -133,24 +141,6 @@ std::vector<Row> weighted_tables_rows(const Experiment& experiment, const JsonRe
 std::vector<Column> distance_axis_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> distance_axis_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
-std::vector<Column> eta_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> eta_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> cone_lobe_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> cone_lobe_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> normal_curves_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> normal_curves_rows(const Experiment& experiment, const JsonReader& json, const Field& field);
-
-std::vector<Column> spheres_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> spheres_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> continuity_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> continuity_rows(const Experiment& experiment, const JsonReader& json, const Field& field);
-
-std::vector<Column> gradient_angles_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> gradient_angles_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
 std::vector<Column> table_resolution_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> table_resolution_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
@@ -167,14 +157,8 @@ std::vector<Column> partial_pre_integration_columns(const Experiment& experiment
 std::vector<Row> partial_pre_integration_rows(const Experiment& experiment, const JsonReader& options,
                                               const Field& field);
 
-std::vector<Column> slab_shading_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> slab_shading_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
 std::vector<Column> clamps_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> clamps_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> shading_integrals_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> shading_integrals_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
 std::vector<Column> images_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> images_rows(const Experiment& experiment, const JsonReader& json, const Field& field);
@@ -241,32 +225,9 @@ const Measure weighted_tables =
 const Measure distance_axis =
     old(Legacy{"distance_axis", "errors of tables for distances 2^j: the interpolation's and the algorithm's", false,
                distance_axis_columns, distance_axis_rows});
-const Measure eta =
-    old(Legacy{"eta", "the length and the direction of the normal between two samples, by ways to normalise it", false,
-               eta_columns, eta_rows});
-const Measure cone_lobe = old(Legacy{"cone_lobe", "highlights that stand for the lobe: deviation, energy, threshold",
-                                     false, cone_lobe_columns, cone_lobe_rows});
-const Measure normal_curves =
-    old(Legacy{"normal_curves", "curves between two normals, point by point, and what light makes of them", false,
-               normal_curves_columns, normal_curves_rows});
-const Measure spheres =
-    old(Legacy{"spheres", "pictures of a smooth and a bumpy sphere by several highlights, and their errors", false,
-               spheres_columns, spheres_rows});
-const Measure continuity =
-    old(Legacy{"continuity", "jumps of the light across the borders of slabs and of the cases of their shading", false,
-               continuity_columns, continuity_rows});
-const Measure gradient_angles =
-    old(Legacy{"gradient_angles", "angles between the normals of consecutive samples, by ways to take gradients", true,
-               gradient_angles_columns, gradient_angles_rows});
-const Measure slab_shading =
-    old(Legacy{"slab_shading", "errors of the light along a slab, by methods, angles and places of the light", false,
-               slab_shading_columns, slab_shading_rows});
 const Measure clamps =
     old(Legacy{"clamps", "the worst that treatments of negative cosines make of a slab, found by search", false,
                clamps_columns, clamps_rows});
-const Measure shading_integrals =
-    old(Legacy{"shading_integrals", "errors of the colour of whole slabs, and the share of slabs a method is best on",
-               false, shading_integrals_columns, shading_integrals_rows});
 const Measure gl_functions =
     old(with_gl({"gl_functions", "local functions in GLSL, binary32, binary64 and 50 digits, each against the next",
                  false, gl_functions_columns, gl_functions_rows}));
