@@ -6,14 +6,22 @@ namespace raytruth {
 
 extern const Measure cone_lobe;
 extern const Measure continuity;
+extern const Measure distance_axis;
 extern const Measure eta;
 extern const Measure gradient_angles;
 extern const Measure normal_curves;
+extern const Measure partial_pre_integration;
+extern const Measure second_order_table_measure;
 extern const Measure shading_integrals;
 extern const Measure slab_shading;
 extern const Measure spheres;
+extern const Measure table_builds_measure;
+extern const Measure table_error_map;
+extern const Measure table_formats_measure;
 extern const Measure table_pareto;
+extern const Measure table_resolution;
 extern const Measure turning_points;
+extern const Measure weighted_tables_measure;
 
 namespace {
 
@@ -132,31 +140,6 @@ std::vector<Row> volume_texture_precision_rows(const Experiment& experiment, con
 std::vector<Column> gl_renderer_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> gl_renderer_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
-std::vector<Column> table_builds_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> table_builds_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> weighted_tables_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> weighted_tables_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> distance_axis_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> distance_axis_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> table_resolution_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> table_resolution_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> table_error_map_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> table_error_map_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> table_formats_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> table_formats_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> second_order_table_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> second_order_table_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
-std::vector<Column> partial_pre_integration_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> partial_pre_integration_rows(const Experiment& experiment, const JsonReader& options,
-                                              const Field& field);
-
 std::vector<Column> clamps_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> clamps_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
@@ -216,15 +199,6 @@ const Measure conformance =
 const Measure reference_proof =
     old(Legacy{"reference_proof", "the certified reference against Arb: not one violation of a radius", false,
                reference_proof_columns, nullptr, reference_proof_blocks, reference_proof_rows});
-const Measure table_builds =
-    old(Legacy{"table_builds", "composites and exponentials of table builders, and their differences to exact tables",
-               false, table_builds_columns, table_builds_rows});
-const Measure weighted_tables =
-    old(Legacy{"weighted_tables", "digits that weighted tables lose, as the printed difference and as sums", false,
-               weighted_tables_columns, weighted_tables_rows});
-const Measure distance_axis =
-    old(Legacy{"distance_axis", "errors of tables for distances 2^j: the interpolation's and the algorithm's", false,
-               distance_axis_columns, distance_axis_rows});
 const Measure clamps =
     old(Legacy{"clamps", "the worst that treatments of negative cosines make of a slab, found by search", false,
                clamps_columns, clamps_rows});
@@ -243,20 +217,6 @@ const Measure volume_texture_precision =
 const Measure gl_renderer =
     old(with_gl({"gl_renderer", "images of a hand-written renderer in GLSL, of the CPU, and certified ones", true,
                  gl_renderer_columns, gl_renderer_rows}));
-const Measure table_resolution =
-    old(Legacy{"table_resolution", "errors of look-ups in exact tables against their size, and their orders", false,
-               table_resolution_columns, table_resolution_rows});
-const Measure table_error_map = old(Legacy{"table_error_map", "where on an exact table look-ups err", false,
-                                           table_error_map_columns, table_error_map_rows});
-const Measure table_formats =
-    old(Legacy{"table_formats", "errors of look-ups by the format of the table and the weights of the texture unit",
-               false, table_formats_columns, table_formats_rows});
-const Measure second_order_table =
-    old(Legacy{"second_order_table", "errors of tables of second order by iterations and size, and what they cost",
-               false, second_order_table_columns, second_order_table_rows});
-const Measure partial_pre_integration =
-    old(Legacy{"partial_pre_integration", "errors of Moreland's partial pre-integration by the size of its table",
-               false, partial_pre_integration_columns, partial_pre_integration_rows});
 const Measure images = old(Legacy{"images", "views of volumes in many ways, against the certified image and each other",
                                   true, images_columns, images_rows});
 const Measure costs = old(Legacy{"costs", "ratios of times that the benchmarks' reports hold, each of one run", false,
@@ -286,8 +246,8 @@ std::span<const Measure* const> measures() {
       &opacity_conventions,
       &conformance,
       &reference_proof,
-      &table_builds,
-      &weighted_tables,
+      &table_builds_measure,
+      &weighted_tables_measure,
       &distance_axis,
       &eta,
       &cone_lobe,
@@ -305,8 +265,8 @@ std::span<const Measure* const> measures() {
       &gl_renderer,
       &table_resolution,
       &table_error_map,
-      &table_formats,
-      &second_order_table,
+      &table_formats_measure,
+      &second_order_table_measure,
       &partial_pre_integration,
       &table_pareto,
       &images,
