@@ -75,8 +75,6 @@ struct MeasureDefinition {
 struct Measure {
   template <class Options, class Record>
   explicit Measure(const MeasureDefinition<Options, Record>& definition);
-  Measure(std::string_view its_name, std::string_view its_summary, bool of_fields, bool gl, auto its_ask)
-      : name(its_name), summary(its_summary), is_of_fields(of_fields), uses_gl(gl), ask(its_ask) {}
 
   std::string_view name;
   std::string_view summary;

@@ -111,8 +111,8 @@ std::vector<Record> records(const Experiment& /*experiment*/, const Options& opt
 
 }  // namespace
 
-extern const Measure toy_count;
-const Measure toy_count{MeasureDefinition{.name = "toy_count",
+extern const Measure toy_count_measure;
+const Measure toy_count_measure{MeasureDefinition{.name = "toy_count",
                                           .summary = "numbers and their squares",
                                           .read = read_options,
                                           .columns = columns,
@@ -123,8 +123,8 @@ const Measure toy_count{MeasureDefinition{.name = "toy_count",
     new(what, "experiments/schemas/measures/toy_count.json", json.dumps({
         "$schema": "https://json-schema.org/draft/2020-12/schema", "$id": "measures/toy_count.json", "title": "Options of the measure toy_count", "type": "object",
         "properties": {"kind": {"const": "toy_count"}, "count": {"type": "integer", "minimum": 1, "maximum": 100}}, "required": ["kind", "count"], "additionalProperties": False}, indent=2) + "\n")
-    change(what, "src/measures/measures.cpp", "extern const Measure turning_points;\n", "extern const Measure toy_count;\nextern const Measure turning_points;\n")
-    change(what, "src/measures/measures.cpp", "&turning_points,", "&turning_points, &toy_count,")
+    change(what, "src/measures/measures.cpp", "extern const Measure turning_points_measure;\n", "extern const Measure toy_count_measure;\nextern const Measure turning_points_measure;\n")
+    change(what, "src/measures/measures.cpp", "&turning_points_measure,", "&turning_points_measure, &toy_count_measure,")
 
 
 def add_builder():

@@ -341,8 +341,8 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure error_waterfall;
-const Measure error_waterfall{MeasureDefinition{
+extern const Measure error_waterfall_measure;
+const Measure error_waterfall_measure{MeasureDefinition{
     .name = "error_waterfall",
     .summary = "what each stage of a renderer adds to an image's error, and what their interaction does",
     .needs = {.transfers = true},

@@ -641,8 +641,8 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure images;
-const Measure images{
+extern const Measure images_measure;
+const Measure images_measure{
     MeasureDefinition{.name = "images",
                       .summary = "views of volumes in many ways, against the certified image and each other",
                       .needs = {.transfers = true},

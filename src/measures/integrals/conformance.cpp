@@ -92,8 +92,8 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
 
 }  // namespace
 
-extern const Measure conformance;
-const Measure conformance{
+extern const Measure conformance_measure;
+const Measure conformance_measure{
     MeasureDefinition{.name = "conformance",
                       .summary = "digits that a scheme's answers to the conformance vectors have right",
                       .needs = {.schemes = true},

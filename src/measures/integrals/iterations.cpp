@@ -177,8 +177,8 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure iterations;
-const Measure iterations{
+extern const Measure iterations_measure;
+const Measure iterations_measure{
     MeasureDefinition{.name = "iterations",
                       .summary = "errors of slabs that are summed up in N iterations, in steps of an 8-bit frame",
                       .needs = {.transfers = true},

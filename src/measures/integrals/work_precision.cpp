@@ -236,8 +236,8 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure work_precision;
-const Measure work_precision{
+extern const Measure work_precision_measure;
+const Measure work_precision_measure{
     MeasureDefinition{.name = "work_precision",
                       .summary = "errors of colour and opacity by their causes, against what a scheme reads and does",
                       .needs = {.schemes = true, .transfers = true},

@@ -197,8 +197,8 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure xi_versus_integral;
-const Measure xi_versus_integral{
+extern const Measure xi_versus_integral_measure;
+const Measure xi_versus_integral_measure{
     MeasureDefinition{.name = "xi_versus_integral",
                       .summary = "rank correlation of xi and the errors of colour and opacity",
                       .needs = {.signal_schemes = true, .usable_samplings = true, .transfers = true},

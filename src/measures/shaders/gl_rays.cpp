@@ -186,8 +186,8 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure gl_rays;
-const Measure gl_rays{
+extern const Measure gl_rays_measure;
+const Measure gl_rays_measure{
     MeasureDefinition{.name = "gl_rays",
                       .summary = "errors of rays in a shader: of the method, and of each arithmetic down to GLSL",
                       .uses_gl = true,

@@ -136,8 +136,8 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure orders;
-const Measure orders{MeasureDefinition{
+extern const Measure orders_measure;
+const Measure orders_measure{MeasureDefinition{
     .name = "orders",
     .summary = "fitted orders of xi and xi_max, refined inside cells and at constant steps across them",
     .needs = {.signal_schemes = true},

@@ -638,8 +638,8 @@ std::vector<Record> conclusions(const Experiment& /*experiment*/, const Options&
 
 }  // namespace
 
-extern const Measure optimal_table;
-const Measure optimal_table{
+extern const Measure optimal_table_measure;
+const Measure optimal_table_measure{
     MeasureDefinition{.name = "optimal_table",
                       .summary = "the smallest table that an image needs, and how well it is predicted",
                       .needs = {.transfers = true},
