@@ -4,6 +4,7 @@
 
 namespace raytruth {
 
+extern const Measure clamps;
 extern const Measure table_pareto;
 extern const Measure turning_points;
 
@@ -170,9 +171,6 @@ std::vector<Row> partial_pre_integration_rows(const Experiment& experiment, cons
 std::vector<Column> slab_shading_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> slab_shading_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
-std::vector<Column> clamps_columns(const Experiment& experiment, const JsonReader& options);
-std::vector<Row> clamps_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
-
 std::vector<Column> shading_integrals_columns(const Experiment& experiment, const JsonReader& options);
 std::vector<Row> shading_integrals_rows(const Experiment& experiment, const JsonReader& options, const Field& field);
 
@@ -261,9 +259,6 @@ const Measure gradient_angles =
 const Measure slab_shading =
     old(Legacy{"slab_shading", "errors of the light along a slab, by methods, angles and places of the light", false,
                slab_shading_columns, slab_shading_rows});
-const Measure clamps =
-    old(Legacy{"clamps", "the worst that treatments of negative cosines make of a slab, found by search", false,
-               clamps_columns, clamps_rows});
 const Measure shading_integrals =
     old(Legacy{"shading_integrals", "errors of the colour of whole slabs, and the share of slabs a method is best on",
                false, shading_integrals_columns, shading_integrals_rows});
