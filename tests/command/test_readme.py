@@ -94,7 +94,7 @@ class Architecture(unittest.TestCase):
 
     def test_rooms_are_the_folders(self):
         text = text_of(SOURCE / "src" / "README.md")
-        named = set(re.findall(r"`(src/[\w/]+)`", text.split("| folder |")[1].split("\n\n")[0]))
+        named = set(re.findall(r"`(src/[\w/]+)`", text.split("\n| folder |")[1].split("\n\n")[0]))
         folders = {SOURCE / "src" / name for name in ("cmake", "experiments", "measures", "program", "raytruth")}
         folders |= {file.parent for file in (SOURCE / "src" / "raytruth").rglob("*.hpp")}
         folders |= {file.parent for file in (SOURCE / "src" / "measures").rglob("*.cpp")}
