@@ -5,10 +5,7 @@
 #include "raytruth/core/named.hpp"
 #include "raytruth/documents/case_json.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
-#include "raytruth/documents/volume_source.hpp"
 #include "raytruth/reference/ray_integral.hpp"
-#include "raytruth/signals/marschner_lobb.hpp"
-#include "raytruth/signals/random_field.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -25,7 +22,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t largest_seed = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t most_rays = 100'000'000;
-constexpr std::int64_t largest_generated_size = 2048;
 constexpr std::int64_t most_plot_columns = 8;
 constexpr double largest_optical_depth = 1e6;
 
@@ -50,14 +46,23 @@ bool is_lost(Json& value, const std::vector<Json>& lost) {
   return value.empty() && !was_empty;
 }
 
-/// Drops the claims, checks or panels that speak only of rows that are lost: those of `lost` words in `column`.
+/// Drops the claims, checks or panels that speak only of rows that are lost: those of `lost` words in `column`. A claim
+/// or check that says what else answers keeps that.
 void drop_statements(Json& statements, const std::string& column, const std::vector<Json>& lost) {
   if (!statements.is_array()) return;
+  const auto are_lost = [&](Json& statement, const char* rows) {
+    return statement.is_object() && statement.contains(rows) && statement[rows].is_object() &&
+           statement[rows].contains(column) && is_lost(statement[rows][column], lost);
+  };
   const auto is_about_lost = [&](Json& statement) {
-    for (const char* const rows : {"row", "rows"})
-      if (statement.is_object() && statement.contains(rows) && statement[rows].is_object() &&
-          statement[rows].contains(column))
-        return is_lost(statement[rows][column], lost);
+    const bool is_otherwise_lost = are_lost(statement, "otherwise");
+    for (const char* const rows : {"row", "rows"}) {
+      if (!are_lost(statement, rows)) continue;
+      if (is_otherwise_lost || !statement.contains("otherwise")) return true;
+      statement[rows] = statement["otherwise"];
+      statement.erase("otherwise");
+    }
+    if (is_otherwise_lost) statement.erase("otherwise");
     return false;
   };
   statements.erase(std::remove_if(statements.begin(), statements.end(), is_about_lost), statements.end());
@@ -91,12 +96,7 @@ void fill_in_defaults(Json& document) {
   document.emplace("checks", Json::array());
   if (document.contains("transfer_functions")) document.emplace("emission", "associated");
   if (!document.contains("fields") || !document["fields"].is_array()) return;
-  for (Json& field : document["fields"]) {
-    if (!field.is_object() || !field.contains("kind")) continue;
-    if (field["kind"] == "random_field") field.emplace("size", 64);
-    if (field["kind"] == "random_field") field.emplace("smoothing", 0);
-    if (field["kind"] == "marschner_lobb") field.emplace("samples", 41);
-  }
+  for (Json& field : document["fields"]) fill_in_field_defaults(field);
 }
 
 /// Refuses a second item of the same name.
@@ -112,22 +112,6 @@ std::string read_name(const JsonReader& json) {
   if (name.find_first_not_of(letters) != std::string::npos || name.front() == '.')
     json.refuse_value("a name of letters, digits, '_', '-' and '.', not beginning with '.',");
   return name;
-}
-
-void check_field(const JsonReader& json) {
-  const std::string kind = json.at("kind").word(names_of(catalogue::fields));
-  if (kind == "random_field") {
-    json.only({"name", "kind", "size", "smoothing"});
-    const auto size = json.at("size").integer(1, largest_generated_size);
-    json.at("smoothing").number(0, static_cast<double>(size));
-  } else if (kind == "marschner_lobb") {
-    json.only({"name", "kind", "samples"});
-    json.at("samples").integer(2, largest_generated_size);
-  } else {
-    json.only({"name", "kind", "volume", "repair"});
-    json.at("volume").text();
-    asks_for_repair(json);
-  }
 }
 
 /// The extinction of the studies' transfer functions is such that a ray that meets the largest one all along has the
@@ -303,8 +287,7 @@ Experiment read_experiment(const std::string& path, std::string_view profile, st
   RowNames names;
   if (of_fields) {
     for (const JsonReader& field : json.at("fields").items()) {
-      check_field(field);
-      experiment.fields.push_back({read_name(field.at("name")), field});
+      experiment.fields.push_back({read_name(field.at("name")), read_named_field(field, experiment.seed), field});
       add_unique(names.fields, field.at("name"), experiment.fields.back().name);
     }
     const JsonReader rays = json.at("rays");
@@ -363,21 +346,12 @@ void need_transfers(const Experiment& experiment) {
   if (experiment.transfers.empty()) experiment.json.refuse("no transfer functions", "a member \"transfer_functions\"");
 }
 
-Field make_field(const Experiment& experiment, const FieldSource& source,
-                 const std::vector<std::filesystem::path>& folders) {
-  const JsonReader& json = source.json;
-  const std::string kind = json.at("kind").text();
-  if (kind == "random_field") {
-    const auto size = json.at("size").integer(1, largest_generated_size);
-    return {source.name, random_field(size, json.at("smoothing").number(), experiment.seed), {0, 1}};
-  }
-  if (kind == "marschner_lobb")
-    return {source.name, sampled_marschner_lobb(json.at("samples").integer(2, largest_generated_size)), {0, 1}};
-
-  SourcedVolume volume = read_sourced_volume(json, folders);
+Field make_field(const FieldSource& source, const std::vector<std::filesystem::path>& folders) {
+  SourcedVolume volume = make_volume(source.document, folders);
+  if (volume.file.empty()) return {source.name, std::move(volume.grid), {0, 1}};
   const auto [low, high] = volume.grid.range();
   if (!std::isfinite(high - low))
-    json.at("volume").refuse(fmt::format("values from {} to {}", low, high), "a range that binary64 holds");
+    source.json.at("volume").refuse(fmt::format("values from {} to {}", low, high), "a range that binary64 holds");
   if (low < high)
     for (double& value : volume.grid.values) value = (value - low) / (high - low);
   else

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "experiments/verdict.hpp"
+#include "raytruth/documents/field_document.hpp"
 #include "raytruth/documents/json/json_reader.hpp"
 #include "raytruth/gl/device.hpp"
 #include "raytruth/schemes/sampling.hpp"
@@ -20,10 +21,11 @@
 
 namespace raytruth {
 
-/// Where a field of an experiment comes from, as its JSON says it.
+/// Where a field of an experiment comes from.
 struct FieldSource {
   std::string name;
-  JsonReader json;
+  FieldDocument document;
+  JsonReader json;  ///< the place that errors name
 };
 
 /// A field of an experiment, ready: values scaled to [0, 1] by `data_range`, for volumes the smallest and largest
@@ -84,8 +86,7 @@ Experiment read_experiment(const std::string& path, std::string_view profile, st
                            const std::optional<std::string>& gl);
 
 /// Makes a field, from its generator or its file found in `folders`. Throws VolumeAbsent where no folder holds it.
-Field make_field(const Experiment& experiment, const FieldSource& source,
-                 const std::vector<std::filesystem::path>& folders);
+Field make_field(const FieldSource& source, const std::vector<std::filesystem::path>& folders);
 
 /// The columns of a result: `measure`, `field`, those of the measures, `status` and `why`.
 std::vector<Column> result_columns(const Experiment& experiment);

@@ -17,4 +17,8 @@ struct ExperimentFile {
 /// tree that the program was built in, that of the installation; sorted by name.
 std::vector<ExperimentFile> find_experiments();
 
+/// The file that is meant: `asked` itself where there is such a file, else the experiment of that name among
+/// `find_experiments()`. Throws InputError, which says where was looked.
+std::string find_experiment(const std::string& asked);
+
 }  // namespace raytruth

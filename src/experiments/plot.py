@@ -1,7 +1,9 @@
-"""Draws the plot of one result, from the result alone: plot.py OUTPUT FORMAT RESULT.
+"""Draws the plots of results, each from its result alone: plot.py FORMAT [RESULT OUTPUT]...
 
-The experiment inside the result says what to draw ("plot"); colours and markers of schemes come from its "styles".
-A kind of panel is a function in PANELS: it draws on axes, and returns its height in inches and its groups.
+The experiment inside a result says what to draw ("plot"); colours and markers of schemes come from its "styles".
+A kind of panel is a function in PANELS: it draws on axes, and returns its height in inches and its groups. A panel whose
+rows are not there says so. A plot that cannot be drawn stops no other: it leaves no OUTPUT, and a line on standard error,
+"cannot be drawn: RESULT: why".
 """
 
 import json
@@ -11,7 +13,11 @@ import textwrap
 
 os.environ.setdefault("SOURCE_DATE_EPOCH", "0")  # the same bytes whenever it is drawn
 
-import matplotlib
+try:
+    import matplotlib
+except ImportError as error:
+    print(error, file=sys.stderr)
+    sys.exit(3)
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -297,6 +303,41 @@ PANELS = {
 }
 
 
+def has_data(result, panel):
+    """Whether a row of the panel has the values that it shows."""
+    shown = {"image": ["line"], "lines": ["x", "y"], "scatter": ["x", "y"]}.get(panel["kind"], ["value"])
+    columns = [panel[name] + ("_p50" if panel["kind"] == "quantiles" else "") for name in shown]
+    return any(all(row.get(column) is not None for column in columns) for row in select(result["rows"], panel["rows"]))
+
+
+def why_without_data(result, panel):
+    """Which rows the panel lacks: those of refused fields that could be among them, each with its reason."""
+
+    def could_match(row, key, wanted):
+        return row.get(key) is None or row[key] in (wanted if isinstance(wanted, list) else [wanted])
+
+    # A refused row names its field, not the view of it that the panel shows.
+    views = {view.get("name"): view.get("field") for measure in result["experiment"]["measures"] for view in measure.get("views", [])}
+    asked = panel["rows"].get("view", [])
+    fields = [views.get(view) for view in (asked if isinstance(asked, list) else [asked])]
+    refused = [row for row in result["rows"] if row.get("status") == "refused" and (not fields or row.get("field") in fields)]
+    absent = [row for row in refused if all(could_match(row, key, wanted) for key, wanted in panel["rows"].items())]
+    reasons = list(dict.fromkeys(f"{row.get('field') or row['measure']}: {row.get('why')}" for row in absent))
+    wanted = ", ".join(f"{key} {words(value) if isinstance(value, (str, float, int)) else value}" for key, value in panel["rows"].items())
+    return "\n".join(reasons) if reasons else f"no row with {wanted} has what this shows"
+
+
+def draw_absence(axes, result, panel):
+    """In place of a panel: that its rows are absent, and why."""
+    text = "\n".join(textwrap.fill(line, 44) for line in ["No data", *why_without_data(result, panel).splitlines()])
+    axes.text(0.5, 0.5, text, fontsize=6.5, color="0.3", ha="center", va="center", transform=axes.transAxes, wrap=False)
+    axes.set_xticks([])
+    axes.set_yticks([])
+    axes.spines[:].set_visible(False)
+    axes.set_xlabel(panel.get("label") or f"{panel['label_x']}: {panel['label_y']}")
+    return max(0.6, 0.11 * len(text.splitlines())), None
+
+
 def refused_rows(result):
     """One line for each field that could not be measured at all."""
     measured = distinct([row for row in result["rows"] if row.get("status") != "refused"], "field")
@@ -316,7 +357,8 @@ def draw(result):
         if place >= len(panels):
             axes.set_visible(False)
             continue
-        height, groups = PANELS[panels[place]["kind"]](axes, result, panels[place])
+        draw_panel = PANELS[panels[place]["kind"]] if has_data(result, panels[place]) else draw_absence
+        height, groups = draw_panel(axes, result, panels[place])
         heights[line] = max(heights[line], height)
         if column == 0:
             first_groups = groups
@@ -346,11 +388,18 @@ def draw(result):
 
 
 def main():
-    output, file_format, source = sys.argv[1:]
-    with open(source, encoding="utf-8") as file:
-        result = json.load(file)
-    metadata = {"Date": None} if file_format == "svg" else {"CreationDate": None} if file_format == "pdf" else {}
-    draw(result).savefig(output, format=file_format, dpi=200, metadata=metadata)
+    file_format, *files = sys.argv[1:]
+    metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(file_format, {})
+    for source, output in zip(files[::2], files[1::2]):
+        try:
+            with open(source, encoding="utf-8") as file:
+                result = json.load(file)
+            draw(result).savefig(output, format=file_format, dpi=200, metadata=metadata)
+        except Exception as error:  # whatever it is, the other plots are drawn
+            print(f"cannot be drawn: {source}: {type(error).__name__}: {error}".replace("\n", " "), file=sys.stderr, flush=True)
+            if os.path.exists(output):
+                os.remove(output)
+        plt.close("all")
 
 
 main()

@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <sstream>
 #include <system_error>
 
 // POSIX asks programs to declare it themselves.
@@ -34,13 +35,16 @@ File temporary_file(const std::string& text) {
   return file;
 }
 
-std::string last_line(std::FILE* file) {
+std::vector<std::string> lines_of(std::FILE* file) {
   std::rewind(file);
+  std::vector<std::string> lines;
   std::string text;
   std::array<char, 4096> part{};
   while (const std::size_t count = std::fread(part.data(), 1, part.size(), file)) text.append(part.data(), count);
-  text.erase(text.find_last_not_of('\n') + 1);
-  return text.substr(text.rfind('\n') + 1);
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);)
+    if (!line.empty()) lines.push_back(line);
+  return lines;
 }
 
 }  // namespace
@@ -69,7 +73,7 @@ PythonOutcome run_python(const std::string& script, const std::vector<std::strin
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), last_line(errors.get())};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), lines_of(errors.get())};
 }
 
 }  // namespace raytruth

@@ -7,8 +7,10 @@ namespace raytruth {
 
 /// What a Python script left behind.
 struct PythonOutcome {
-  int status = 0;          ///< exit code, or 128 + the signal that ended it
-  std::string last_error;  ///< the last line that it wrote to standard error
+  int status = 0;                   ///< exit code, or 128 + the signal that ended it
+  std::vector<std::string> errors;  ///< lines that it wrote to standard error
+
+  [[nodiscard]] std::string last_error() const { return errors.empty() ? std::string() : errors.back(); }
 };
 
 /// Runs a script, which Python reads from standard input, with arguments. The interpreter is that of the environment

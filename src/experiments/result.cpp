@@ -240,6 +240,11 @@ std::vector<std::string> broken_checks(const Json& result) {
   std::vector<std::string> lines;
   for (const Json& check : result.at("checks")) {
     if (check.at("holds").get<bool>()) continue;
+    if (check.at("measured").is_null()) {
+      lines.push_back(fmt::format("check: nothing to measure: {} ({})", check.at("bound").get<std::string>(),
+                                  brief(check.at("why"))));
+      continue;
+    }
     lines.push_back(fmt::format("check: does not hold: {}: measured {}, limit {}{}",
                                 check.at("bound").get<std::string>(), brief(check.at("measured")),
                                 brief(check.at("limit")),

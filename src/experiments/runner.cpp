@@ -35,14 +35,14 @@ Row complete_row(std::string_view measure, const std::string& field, Row row, co
 /// A field, made when it is first asked for: an interrupted run may have finished with it.
 class LazyField {
  public:
-  LazyField(const Experiment& experiment, const FieldSource& source, const std::vector<std::filesystem::path>& folders)
-      : experiment_(experiment), source_(source), folders_(folders) {}
+  LazyField(const FieldSource& source, const std::vector<std::filesystem::path>& folders)
+      : source_(source), folders_(folders) {}
 
   /// Null where the field's volume is absent.
   const Field* get(RunObserver& observer) {
     if (field_ || is_absent()) return field_ ? &*field_ : nullptr;
     try {
-      field_ = make_field(experiment_, source_, folders_);
+      field_ = make_field(source_, folders_);
       for (const std::string& warning : field_->warnings) observer.warn(warning);
       return &*field_;
     } catch (const VolumeAbsent& error) {
@@ -56,7 +56,6 @@ class LazyField {
   [[nodiscard]] const std::string& why_absent() const { return why_absent_; }
 
  private:
-  const Experiment& experiment_;
   const FieldSource& source_;
   const std::vector<std::filesystem::path>& folders_;
   std::optional<Field> field_;
@@ -86,7 +85,7 @@ class UnitRunner {
 
   Findings run_all() {
     for (const FieldSource& source : experiment_.fields) {
-      LazyField field(experiment_, source, folders_);
+      LazyField field(source, folders_);
       for_each_measure(true, [&](const AskedMeasure& asked) { run_field(asked, source, field); });
     }
     for_each_measure(true, [&](const AskedMeasure& asked) { add_conclusions(asked); });

@@ -1,6 +1,7 @@
 #include "experiments/verdict.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +51,38 @@ std::vector<const Row*> select(const std::vector<Row>& rows, const Selector& sel
   for (const Row& row : rows)
     if (is_selected(row, selector)) selected.push_back(&row);
   return selected;
+}
+
+/// The fields of rows, each once.
+std::string fields_of(const std::vector<const Row*>& rows) {
+  std::vector<std::string> names;
+  for (const Row* row : rows)
+    if (const auto* const name = std::get_if<std::string>(&cell(*row, "field"));
+        name != nullptr && std::find(names.begin(), names.end(), *name) == names.end())
+      names.push_back(*name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// The rows that answer, and why it is not those asked first.
+struct Answering {
+  const Selector& rows;
+  std::string why;
+};
+
+Answering answering(const Selector& first, const std::optional<Selector>& otherwise, const std::vector<Row>& rows) {
+  const auto selected = select(rows, first);
+  const bool are_all_refused =
+      std::all_of(selected.begin(), selected.end(), [](const Row* row) { return is_refused(*row); });
+  if (!otherwise || selected.empty() || !are_all_refused) return {first, {}};
+  return {*otherwise, fmt::format("all rows of {} are refused: these are of {}", fields_of(selected),
+                                  fields_of(select(rows, *otherwise)))};
+}
+
+/// What a verdict says: why it is not about the rows asked first, and what is stated.
+Value joined(const std::string& why, const Value& stated) {
+  if (why.empty()) return stated;
+  const auto* const text = std::get_if<std::string>(&stated);
+  return text == nullptr ? why : why + "; " + *text;
 }
 
 /// The reason that a refused row gives.
@@ -146,6 +179,15 @@ Selector read_selector(const JsonReader& json, const RowNames& names) {
   return selector;
 }
 
+namespace {
+
+std::optional<Selector> read_otherwise(const JsonReader& json, const RowNames& names) {
+  const auto otherwise = json.find("otherwise");
+  return otherwise ? std::optional(read_selector(*otherwise, names)) : std::nullopt;
+}
+
+}  // namespace
+
 Claim read_claim(const JsonReader& json, const RowNames& names) {
   Claim claim;
   claim.name = json.at("claim").text();
@@ -157,14 +199,14 @@ Claim read_claim(const JsonReader& json, const RowNames& names) {
   if (const auto why = json.find("why")) claim.why = why->text();
   if (const auto part = json.find("part")) claim.part = part->text();
   if (stated.is_number() && json.find("row")) {
-    json.only({"claim", "part", "stated", "resolution", "row", "measured", "low", "high", "why"});
+    json.only({"claim", "part", "stated", "resolution", "row", "otherwise", "measured", "low", "high", "why"});
     claim.resolution = json.at("resolution").positive_number();
     claim.rows = read_selector(json.at("row"), names);
     claim.measured = read_column(json.at("measured"), names);
     if (const auto low = json.find("low")) claim.low = read_column(*low, names);
     if (const auto high = json.find("high")) claim.high = read_column(*high, names);
   } else if (stated.is_string() && json.find("rows")) {
-    json.only({"claim", "part", "stated", "rows", "test", "why"});
+    json.only({"claim", "part", "stated", "rows", "otherwise", "test", "why"});
     json.at("test").only({"column", "at_least", "at_most"});
     claim.rows = read_selector(json.at("rows"), names);
     claim.test = read_bound(json.at("test"), names);
@@ -172,23 +214,31 @@ Claim read_claim(const JsonReader& json, const RowNames& names) {
     json.only({"claim", "part", "stated", "why"});
     json.at("why").text();
   }
+  claim.otherwise = read_otherwise(json, names);
   return claim;
 }
 
 Check read_check(const JsonReader& json, const RowNames& names) {
-  json.only({"bound", "rows", "column", "at_least", "at_most"});
-  return {json.at("bound").text(), read_selector(json.at("rows"), names), read_bound(json, names)};
+  json.only({"bound", "rows", "otherwise", "column", "at_least", "at_most"});
+  return {.sentence = json.at("bound").text(),
+          .rows = read_selector(json.at("rows"), names),
+          .bound = read_bound(json, names),
+          .otherwise = read_otherwise(json, names)};
 }
 
 Verdict judge(const Claim& claim, const std::vector<Row>& rows, const std::vector<Column>& columns) {
   if (!claim.rows) return not_comparable(claim.why);
-  if (claim.test) return judge_sentence(claim, *claim.rows, *claim.test, rows);
-  return judge_figure(claim, *claim.rows, rows, columns);
+  const Answering answer = answering(*claim.rows, claim.otherwise, rows);
+  Verdict verdict = claim.test ? judge_sentence(claim, answer.rows, *claim.test, rows)
+                               : judge_figure(claim, answer.rows, rows, columns);
+  verdict.why = joined(answer.why, verdict.why);
+  return verdict;
 }
 
 CheckOutcome judge(const Check& check, const std::vector<Row>& rows) {
-  const auto findings = collect(rows, check.rows, check.bound.column);
-  CheckOutcome outcome{false, {}, findings.missing};
+  const Answering answer = answering(check.rows, check.otherwise, rows);
+  const auto findings = collect(rows, answer.rows, check.bound.column);
+  CheckOutcome outcome{false, {}, joined(answer.why, findings.missing)};
   if (findings.values.empty()) return outcome;
   outcome.measured = worst(findings, check.bound);
   outcome.holds = findings.missing == Value() && holds(worst(findings, check.bound), check.bound);

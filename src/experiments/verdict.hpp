@@ -30,9 +30,10 @@ struct Claim {
   Value stated;
   double resolution = 0;
   std::optional<Selector> rows;
-  std::string measured;  ///< column of a figure
-  std::string low;       ///< column; empty: measured minus its radius
-  std::string high;      ///< column; empty: measured plus its radius
+  std::optional<Selector> otherwise = {};  ///< the rows that answer where all of `rows` are refused
+  std::string measured;                    ///< column of a figure
+  std::string low;                         ///< column; empty: measured minus its radius
+  std::string high;                        ///< column; empty: measured plus its radius
   std::optional<Bound> test;
   std::string why;
 };
@@ -42,6 +43,7 @@ struct Check {
   std::string sentence;
   Selector rows;
   Bound bound;
+  std::optional<Selector> otherwise = {};  ///< the rows that are bounded where all of `rows` are refused
 };
 
 /// What the rows say of a claim.

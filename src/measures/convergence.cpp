@@ -1,7 +1,5 @@
 #include "measures/convergence.hpp"
 
-#include "raytruth/statistics/order.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -28,42 +26,49 @@ void sample(const Chain<3>& signal, Regime regime, std::size_t level, Samples<do
     sample_constant(signal, step_of(level), samples);
 }
 
-std::vector<Column> convergence_columns() {
+Columns<ConvergenceKeys> convergence_key_columns() {
   return {
       {.name = "regime",
-       .unit = "",
        .description = "cells: every cell divided alike, no interval crosses a border; constant: a constant step",
-       .is_key = true},
-      {.name = "scheme", .unit = "", .description = "the scheme", .is_key = true},
-      {.name = "part", .unit = "", .description = "point: errors at one step; fit: the orders", .is_key = true},
-      {.name = "step", .unit = "cell or voxel", .description = "distance of samples", .is_key = true},
+       .is_key = true,
+       .cell = &ConvergenceKeys::regime},
+      {.name = "scheme", .description = "the scheme", .is_key = true, .cell = &ConvergenceKeys::scheme},
+      {.name = "part",
+       .description = "point: errors at one step; fit: the orders",
+       .is_key = true,
+       .cell = [](const ConvergenceKeys& keys) { return keys.step ? "point" : "fit"; }},
+      {.name = "step",
+       .unit = "cell or voxel",
+       .description = "distance of samples",
+       .is_key = true,
+       .cell = [](const ConvergenceKeys& keys) { return cell_if(keys.step.has_value(), keys.step); }},
   };
 }
 
-std::vector<Column> order_columns(const std::string& name, const std::string& errors) {
+Columns<ShownOrder> shown_order_columns(const std::string& name, const std::string& errors) {
   return {
       {.name = "order_" + name,
-       .unit = "",
        .description = fmt::format("slope of log {} over log step, least squares over steps 2^-{} to 2^-{}, without "
                                   "points within {} radii",
-                                  errors, exponent_of(0), exponent_of(level_count - 1), meaningful_radii)},
+                                  errors, exponent_of(0), exponent_of(level_count - 1), meaningful_radii),
+       .cell = [](const ShownOrder& order) { return order.fit ? std::optional(order.fit->order) : std::nullopt; }},
       {.name = "order_" + name + "_residual",
-       .unit = "",
-       .description = "root mean square of log2 of the errors about the line"},
-      {.name = "order_" + name + "_finest", .unit = "cell or voxel", .description = "least step in the fit"},
+       .description = "root mean square of log2 of the errors about the line",
+       .cell = [](const ShownOrder& order) { return order.fit ? std::optional(order.fit->residual) : std::nullopt; }},
+      {.name = "order_" + name + "_finest",
+       .unit = "cell or voxel",
+       .description = "least step in the fit",
+       .cell = &ShownOrder::finest},
   };
 }
 
-void add_order(Row& row, const std::string& name, std::span<const LevelError> levels) {
+ShownOrder shown_order(std::span<const LevelError> levels) {
   std::vector<StepError> points;
   for (std::size_t level = 0; level < levels.size(); ++level)
     if (levels[level].error > meaningful_radii * levels[level].radius)
       points.push_back({step_of(level), levels[level].error});
-  const bool is_fit = points.size() >= 2;
-  const FittedOrder fit = is_fit ? fit_order(points) : FittedOrder{};
-  row.emplace_back("order_" + name, is_fit ? Value(fit.order) : Value());
-  row.emplace_back("order_" + name + "_residual", is_fit ? Value(fit.residual) : Value());
-  row.emplace_back("order_" + name + "_finest", is_fit ? Value(points.back().step) : Value());
+  if (points.size() < 2) return {};
+  return {fit_order(points), points.back().step};
 }
 
 }  // namespace raytruth

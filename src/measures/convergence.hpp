@@ -1,11 +1,13 @@
 #pragma once
 
-#include "experiments/row.hpp"
+#include "experiments/columns.hpp"
 #include "raytruth/core/chain.hpp"
 #include "raytruth/schemes/samples.hpp"
+#include "raytruth/statistics/order.hpp"
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,11 +31,25 @@ double step_of(std::size_t level);
 
 void sample(const Chain<3>& signal, Regime regime, std::size_t level, Samples<double>& samples);
 
-/// Keys of the rows: `regime`, `scheme`, `part` (point or fit), `step`.
-std::vector<Column> convergence_columns();
+/// Which row of a study of orders: how samples get closer, of which scheme, and at which step; none: the orders that
+/// all steps show.
+struct ConvergenceKeys {
+  std::string regime;
+  std::string scheme;
+  std::optional<double> step;
+};
 
-/// What the fit of a quantity says: `order_NAME` and its residual and finest step. `errors` is the column it fits.
-std::vector<Column> order_columns(const std::string& name, const std::string& errors);
+/// Keys of the rows: `regime`, `scheme`, `part` (point or fit), `step`.
+Columns<ConvergenceKeys> convergence_key_columns();
+
+/// The order that errors at all steps show; none where fewer than two of them stand out from their radii.
+struct ShownOrder {
+  std::optional<FittedOrder> fit;
+  std::optional<double> finest;  ///< least step in the fit
+};
+
+/// `order_NAME` and its residual and finest step. `errors` is the column that the fit is of.
+Columns<ShownOrder> shown_order_columns(const std::string& name, const std::string& errors);
 
 /// Errors by level, and how far each may be off.
 struct LevelError {
@@ -41,6 +57,7 @@ struct LevelError {
   double radius = 0;
 };
 
-void add_order(Row& row, const std::string& name, std::span<const LevelError> levels);
+/// By level.
+ShownOrder shown_order(std::span<const LevelError> levels);
 
 }  // namespace raytruth

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <vector>
 
 namespace raytruth {
 
@@ -21,7 +22,7 @@ struct Options {
   std::vector<std::string> counters;  ///< ratios within one run, which say more than seconds of one machine
 };
 
-Options read_options(const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "reports", "counters"});
   Options options{json.at("reports").resolve(json.at("reports").text()), {}};
   for (const JsonReader& counter : json.at("counters").items()) options.counters.push_back(counter.text());
@@ -51,7 +52,22 @@ struct Repeated {
   std::optional<double> deviation;
 };
 
-std::vector<Row> rows_of(const fs::path& file, const std::vector<std::string>& counters) {
+/// A counter of a benchmark.
+struct Ratio {
+  std::string report;
+  std::string benchmark;
+  std::string counter;
+  double median;
+  double radius;
+};
+
+/// A ratio, or why there is none.
+struct Record {
+  std::optional<Ratio> ratio;
+  std::optional<std::string> refusal = {};
+};
+
+void add_ratios(std::vector<Record>& records, const fs::path& file, const std::vector<std::string>& counters) {
   std::vector<std::string> order;
   std::map<std::string, std::map<std::string, Repeated>> benchmarks;
   const JsonReader report = JsonReader::from_file(file.string());
@@ -68,43 +84,60 @@ std::vector<Row> rows_of(const fs::path& file, const std::vector<std::string>& c
       }
   }
 
-  std::vector<Row> rows;
   for (const std::string& name : order)
     for (const std::string& counter : counters) {
       const Repeated repeated = benchmarks[name][counter];
       if (!repeated.median) continue;
-      const double radius = 2 * repeated.deviation.value_or(0);
-      rows.push_back({{"report", file.stem().string()},
-                      {"benchmark", name},
-                      {"counter", counter},
-                      {"ratio", *repeated.median},
-                      {"low", *repeated.median - radius},
-                      {"high", *repeated.median + radius}});
+      records.push_back({Ratio{.report = file.stem().string(),
+                               .benchmark = name,
+                               .counter = counter,
+                               .median = *repeated.median,
+                               .radius = 2 * repeated.deviation.value_or(0)}});
     }
-  return rows;
+}
+
+Columns<Ratio> ratio_columns() {
+  return {
+      {.name = "report", .description = "the benchmark program's report", .is_key = true, .cell = &Ratio::report},
+      {.name = "benchmark",
+       .description = "what was timed against its peer",
+       .is_key = true,
+       .cell = &Ratio::benchmark},
+      {.name = "counter",
+       .description = "which ratio, as the benchmark names it",
+       .is_key = true,
+       .cell = &Ratio::counter},
+      {.name = "ratio", .description = "median over the repetitions", .cell = &Ratio::median},
+      {.name = "low",
+       .description = "two standard deviations over the repetitions below it",
+       .cell = [](const Ratio& ratio) { return ratio.median - ratio.radius; }},
+      {.name = "high",
+       .description = "and above it",
+       .cell = [](const Ratio& ratio) { return ratio.median + ratio.radius; }},
+  };
+}
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns;
+  append_part(columns, &Record::ratio, ratio_columns());
+  append_refusal(columns, &Record::refusal);
+  return columns;
+}
+
+std::vector<Record> records(const Experiment& /*experiment*/, const Options& options) {
+  std::vector<Record> records;
+  for (const fs::path& file : reports_in(options.reports)) add_ratios(records, file, options.counters);
+  if (records.empty()) records.push_back({{}, "no reports of benchmarks; tests/run --benchmarks --update writes them"});
+  return records;
 }
 
 }  // namespace
 
-std::vector<Column> costs_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_options(options);
-  return {{.name = "report", .unit = "", .description = "the benchmark program's report", .is_key = true},
-          {.name = "benchmark", .unit = "", .description = "what was timed against its peer", .is_key = true},
-          {.name = "counter", .unit = "", .description = "which ratio, as the benchmark names it", .is_key = true},
-          {.name = "ratio", .unit = "", .description = "median over the repetitions"},
-          {.name = "low", .unit = "", .description = "two standard deviations over the repetitions below it"},
-          {.name = "high", .unit = "", .description = "and above it"}};
-}
-
-std::vector<Row> costs_rows(const Experiment& /*experiment*/, const JsonReader& options, const Field& /*field*/) {
-  const Options asked = read_options(options);
-  std::vector<Row> rows;
-  for (const fs::path& file : reports_in(asked.reports))
-    for (Row& row : rows_of(file, asked.counters)) rows.push_back(std::move(row));
-  if (rows.empty())
-    rows.push_back(
-        {{"status", "refused"}, {"why", "no reports of benchmarks; tests/run --benchmarks --update writes them"}});
-  return rows;
-}
+extern const Measure costs;
+const Measure costs{MeasureDefinition{.name = "costs",
+                                      .summary = "ratios of times that the benchmarks' reports hold, each of one run",
+                                      .read = read_options,
+                                      .columns = columns,
+                                      .of_experiment = records}};
 
 }  // namespace raytruth

@@ -53,6 +53,34 @@ std::vector<const IntegralScheme*> schemes_of(const Experiment& experiment) {
 
 std::string emission_name(Emission emission) { return emission == Emission::associated ? "associated" : "plain"; }
 
+Columns<TransferKeys> transfer_key_columns() {
+  return {{.name = "transfer", .description = "the transfer function", .is_key = true, .cell = &TransferKeys::transfer},
+          {.name = "emission",
+           .description = "associated: q = extinction times color; plain: q = color",
+           .is_key = true,
+           .cell = [](const TransferKeys& keys) { return emission_name(keys.emission); }}};
+}
+
+Columns<Sampling> sampling_key_columns() {
+  return {{.name = "sampling", .description = "where samples are taken", .is_key = true, .cell = &Sampling::kind},
+          {.name = "step",
+           .unit = "voxel",
+           .description = "distance of samples, constant sampling only",
+           .is_key = true,
+           .cell = &Sampling::step}};
+}
+
+RayCounts ray_counts(const Experiment& experiment, std::size_t studied) {
+  return {experiment.rays.count, experiment.rays.count - static_cast<std::int64_t>(studied)};
+}
+
+Columns<RayCounts> ray_count_columns() {
+  return {{.name = "rays", .description = "rays drawn", .cell = &RayCounts::drawn},
+          {.name = "rays_constant",
+           .description = "of these, rays with a constant signal, left out",
+           .cell = &RayCounts::constant}};
+}
+
 std::vector<Column> transfer_columns() {
   return {{.name = "transfer", .unit = "", .description = "the transfer function", .is_key = true},
           {.name = "emission",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "experiments/columns.hpp"
 #include "experiments/experiment.hpp"
 #include "raytruth/core/chain.hpp"
 #include "raytruth/reference/certified.hpp"
@@ -9,6 +10,7 @@
 #include "raytruth/transfer/emission.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -36,6 +38,29 @@ std::vector<const IntegralScheme*> schemes_of(const Experiment& experiment);
 
 /// "associated" or "plain".
 std::string emission_name(Emission emission);
+
+/// Under which transfer function colour and opacity are studied.
+struct TransferKeys {
+  std::string transfer;
+  Emission emission;
+};
+
+/// Keys of the rows: `transfer`, `emission`.
+Columns<TransferKeys> transfer_key_columns();
+
+/// Further keys: `sampling`, `step`.
+Columns<Sampling> sampling_key_columns();
+
+/// How many rays there were.
+struct RayCounts {
+  std::int64_t drawn = 0;
+  std::int64_t constant = 0;  ///< of these, with a constant signal: not studied
+};
+
+RayCounts ray_counts(const Experiment& experiment, std::size_t studied);
+
+/// `rays`, `rays_constant`.
+Columns<RayCounts> ray_count_columns();
 
 /// Keys of the rows of studies of colour and opacity: `transfer`, `emission`.
 std::vector<Column> transfer_columns();

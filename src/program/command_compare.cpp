@@ -1,5 +1,5 @@
 #include "experiments/output.hpp"
-#include "program/commands.hpp"
+#include "program/command.hpp"
 #include "raytruth/documents/scene_case.hpp"
 #include "raytruth/images/image_file.hpp"
 
@@ -11,6 +11,13 @@ namespace raytruth {
 
 namespace {
 
+struct CompareOptions {
+  std::string reference;
+  std::string image;
+  std::string difference;  ///< file; empty: none
+  double gain = 1;         ///< of the differences in it
+};
+
 /// |B - A| of each channel, times `gain`.
 Image difference_image(const Image& a, const Image& b, double gain) {
   Image difference(a.size);
@@ -20,8 +27,6 @@ Image difference_image(const Image& a, const Image& b, double gain) {
   }
   return difference;
 }
-
-}  // namespace
 
 int compare_images(const CompareOptions& options) {
   const Image a = read_image(options.reference);
@@ -41,5 +46,26 @@ int compare_images(const CompareOptions& options) {
   print(result.dump(2) + "\n");
   return 0;
 }
+
+std::function<int()> describe(CommandOptions& add) {
+  const auto options = std::make_shared<CompareOptions>();
+  add.operand("reference", options->reference, ".pfm, .npy or .png (its stored values)");
+  add.operand("image", options->image, "An image of the same size");
+  add.text("--difference", "FILE", options->difference, "Write the magnitudes of the differences into this image");
+  add.positive_number("--gain", options->gain, "Times this (default: 1)");
+  return [options] { return compare_images(*options); };
+}
+
+}  // namespace
+
+extern const Command compare_command;
+const Command compare_command{
+    .name = "compare",
+    .summary = "Tell how far an image is from a reference",
+    .example = "raytruth compare truth.pfm image.pfm",
+    .notes =
+        "Colours are clamped to [0, 1]; PSNR has the peak 1. `danskin_hanrahan` is 100 sum |I - R| / sum R, in\n"
+        "percent; `ssim` that of Wang et al. 2004, windows of 11 x 11.",
+    .describe = describe};
 
 }  // namespace raytruth

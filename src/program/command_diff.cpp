@@ -1,7 +1,7 @@
 #include "experiments/output.hpp"
 #include "experiments/result.hpp"
 #include "experiments/verdict.hpp"
-#include "program/commands.hpp"
+#include "program/command.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -14,6 +14,13 @@
 namespace raytruth {
 
 namespace {
+
+struct DiffOptions {
+  std::string before;
+  std::string after;
+  bool json = false;
+  bool check = false;
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -143,8 +150,6 @@ std::string readable(const Differences& differences) {
   return text.empty() ? "nothing changed beyond both radii\n" : text;
 }
 
-}  // namespace
-
 int compare_results(const DiffOptions& options) {
   const JsonReader before = read_result(options.before);
   const JsonReader after = read_result(options.after);
@@ -160,5 +165,23 @@ int compare_results(const DiffOptions& options) {
   print(options.json ? json.dump(2) + "\n" : readable(differences));
   return options.check && !differences.is_empty() ? 1 : 0;
 }
+
+std::function<int()> describe(CommandOptions& add) {
+  const auto options = std::make_shared<DiffOptions>();
+  add.operand("before", options->before, "JSON file");
+  add.operand("after", options->after, "JSON file");
+  add.flag("--json", options->json, "As JSON");
+  add.flag("--check", options->check, "Exit with 1 if something changed");
+  return [options] { return compare_results(*options); };
+}
+
+}  // namespace
+
+extern const Command diff_command;
+const Command diff_command{.name = "diff",
+                           .summary = "Tell what changed between two results, beyond both radii",
+                           .example = "raytruth diff results/xi_adaptive.json out/xi_adaptive.json",
+                           .notes = "",
+                           .describe = describe};
 
 }  // namespace raytruth

@@ -1,5 +1,5 @@
 #include "experiments/output.hpp"
-#include "program/commands.hpp"
+#include "program/command.hpp"
 #include "raytruth/documents/case.hpp"
 #include "raytruth/documents/scene_case.hpp"
 #include "raytruth/documents/slab_case.hpp"
@@ -14,6 +14,14 @@
 #include <variant>
 
 namespace raytruth {
+
+namespace {
+
+struct EvalOptions {
+  std::string file;
+  int threads = 0;
+  std::string data;
+};
 
 int evaluate_cases(const EvalOptions& options) {
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
@@ -50,5 +58,22 @@ int evaluate_cases(const EvalOptions& options) {
   print((document.is_array() ? nlohmann::ordered_json(answers) : answers.front()).dump(2) + "\n");
   return 0;
 }
+
+std::function<int()> describe(CommandOptions& add) {
+  const auto options = std::make_shared<EvalOptions>();
+  add.operand("case", options->file, "JSON file; '-' is standard input");
+  add.threads(options->threads);
+  add.data(options->data);
+  return [options] { return evaluate_cases(*options); };
+}
+
+}  // namespace
+
+extern const Command eval_command;
+const Command eval_command{.name = "eval",
+                           .summary = "Evaluate one ray, slab or scene, or an array of them, by the schemes they name",
+                           .example = "raytruth eval ray.json",
+                           .notes = "",
+                           .describe = describe};
 
 }  // namespace raytruth

@@ -1,5 +1,5 @@
 #include "experiments/output.hpp"
-#include "program/commands.hpp"
+#include "program/command.hpp"
 #include "raytruth/documents/volume_source.hpp"
 #include "raytruth/volume/files/describe_volume.hpp"
 #include "raytruth/volume/files/find_volume.hpp"
@@ -12,6 +12,12 @@
 namespace raytruth {
 
 namespace {
+
+struct InfoOptions {
+  std::string volume;
+  bool json = false;
+  std::string data;
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -63,13 +69,28 @@ std::string description_text(const VolumeDescription& volume) {
   return text;
 }
 
-}  // namespace
-
 int show_volume(const InfoOptions& options) {
   const auto description = describe_volume(read_volume(find_volume(options.volume, volume_folders(options.data))));
   if (description.lost_first_byte) say(lost_first_byte_warning(description.file));
   print(options.json ? description_json(description).dump(2) + "\n" : description_text(description));
   return 0;
 }
+
+std::function<int()> describe(CommandOptions& add) {
+  const auto options = std::make_shared<InfoOptions>();
+  add.operand("volume", options->volume, "File, or name in the data folders");
+  add.flag("--json", options->json, "As JSON");
+  add.data(options->data);
+  return [options] { return show_volume(*options); };
+}
+
+}  // namespace
+
+extern const Command info_command;
+const Command info_command{.name = "info",
+                           .summary = "Describe a volume: header, range, levels in use, signs of damage",
+                           .example = "raytruth info ch2.nii.gz",
+                           .notes = "",
+                           .describe = describe};
 
 }  // namespace raytruth

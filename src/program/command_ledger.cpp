@@ -3,7 +3,7 @@
 #include "experiments/python.hpp"
 #include "experiments/result.hpp"
 #include "experiments/texts.hpp"
-#include "program/commands.hpp"
+#include "program/command.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,6 +15,13 @@
 namespace raytruth {
 
 namespace {
+
+struct LedgerOptions {
+  std::vector<std::string> results;  ///< empty: those in results/
+  std::string file = "results/ledger.json";
+  std::string page;  ///< empty: none
+  std::string plots = "plots";
+};
 
 namespace fs = std::filesystem;
 
@@ -44,10 +51,8 @@ void write_page(const fs::path& ledger, const fs::path& page, const std::string&
   std::error_code ignored;
   if (outcome.status == 0) return move_into_place(temporary, page);
   fs::remove(temporary, ignored);
-  throw InputError(fmt::format("{}: cannot be written: {}", page.string(), outcome.last_error));
+  throw InputError(fmt::format("{}: cannot be written: {}", page.string(), outcome.last_error()));
 }
-
-}  // namespace
 
 int keep_ledger(const LedgerOptions& options) {
   std::vector<JsonReader> results;
@@ -59,5 +64,23 @@ int keep_ledger(const LedgerOptions& options) {
   print(claims_table(ledger.at("rows")));
   return 0;
 }
+
+std::function<int()> describe(CommandOptions& add) {
+  const auto options = std::make_shared<LedgerOptions>();
+  add.optional_operands("result", options->results, "JSON files (default: those in results/)");
+  add.text("-o", "FILE", options->file, "Write the ledger, a result, to this file (default: results/ledger.json)");
+  add.text("--page", "FILE", options->page, "Write a page for people too, with the experiments' plots");
+  add.text("--plots", "DIR", options->plots, "Where the page's plots are, NAME.svg (default: plots)");
+  return [options] { return keep_ledger(*options); };
+}
+
+}  // namespace
+
+extern const Command ledger_command;
+const Command ledger_command{.name = "ledger",
+                             .summary = "Collect the verdicts of results on the publications' claims",
+                             .example = "raytruth ledger --page plots/ledger.html",
+                             .notes = "",
+                             .describe = describe};
 
 }  // namespace raytruth

@@ -1,7 +1,7 @@
 #include "experiments/experiment_folder.hpp"
 #include "experiments/measure.hpp"
 #include "experiments/output.hpp"
-#include "program/commands.hpp"
+#include "program/command.hpp"
 #include "raytruth/catalogue.hpp"
 #include "raytruth/core/named.hpp"
 #include "raytruth/shading/slab_shading.hpp"
@@ -10,11 +10,17 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 
 namespace raytruth {
 
 namespace {
+
+struct ListOptions {
+  std::string kind;  ///< empty: all
+  bool json = false;
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -68,14 +74,17 @@ std::string text_of(const std::string& kind) {
   const Json list = list_of(kind);
   std::size_t width = 0;
   for (const Json& entry : list) width = std::max(width, entry.at("name").get_ref<const std::string&>().size());
-  std::string text = fmt::format("{}{}\n", kind, list.empty() ? ": none" : "");
+  // Where experiments are found depends on the folder that the program runs in.
+  const std::string where =
+      kind == "experiments" && !list.empty()
+          ? ", in " + std::filesystem::path(list.front().at("file").get<std::string>()).parent_path().string()
+          : "";
+  std::string text = fmt::format("{}{}{}\n", kind, where, list.empty() ? ": none" : "");
   for (const Json& entry : list)
     text += fmt::format("  {:<{}}  {}\n", entry.at("name").get<std::string>(), width,
                         entry.at("summary").get<std::string>());
   return text;
 }
-
-}  // namespace
 
 const std::vector<std::string>& listed_kinds() {
   static const std::vector<std::string> kinds{"signals",  "fields",   "transfers", "samplings",  "schemes",
@@ -94,5 +103,21 @@ int list_ingredients(const ListOptions& options) {
     print(text_of(kind));
   return 0;
 }
+
+std::function<int()> describe(CommandOptions& add) {
+  const auto options = std::make_shared<ListOptions>();
+  add.optional_operand("kind", options->kind, listed_kinds(), "Of what (default: everything)");
+  add.flag("--json", options->json, "As JSON");
+  return [options] { return list_ingredients(*options); };
+}
+
+}  // namespace
+
+extern const Command list_command;
+const Command list_command{.name = "list",
+                           .summary = "List what there is",
+                           .example = "raytruth list schemes --json",
+                           .notes = "",
+                           .describe = describe};
 
 }  // namespace raytruth

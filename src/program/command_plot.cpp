@@ -2,45 +2,113 @@
 #include "experiments/python.hpp"
 #include "experiments/result.hpp"
 #include "experiments/texts.hpp"
-#include "program/commands.hpp"
+#include "program/command.hpp"
+#include "raytruth/core/one_line.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <string>
 #include <system_error>
+#include <vector>
 
 namespace raytruth {
 
 namespace {
 
-void require_matplotlib() {
-  const auto outcome = run_python("import matplotlib", {});
-  if (outcome.status != 0)
-    throw MissingError(
-        fmt::format("python cannot import matplotlib ({}); install python3-matplotlib", outcome.last_error));
+struct PlotOptions {
+  std::vector<std::string> results;
+  std::string folder = ".";
+  std::string format = "svg";
+};
+
+/// A plot to be drawn: the script writes to `temporary`, which takes the place of `file` once it is whole.
+struct Drawing {
+  std::string result;
+  std::filesystem::path file;
+  std::filesystem::path temporary;
+};
+
+/// Those of the results whose experiment asks for a plot.
+std::vector<Drawing> drawings_of(const PlotOptions& options) {
+  std::vector<Drawing> drawings;
+  for (const std::string& path : options.results) {
+    const JsonReader experiment = read_result(path).at("experiment");
+    if (!experiment.find("plot") && options.results.size() > 1) {
+      say(fmt::format("{}: its experiment asks for no plot", path));
+      continue;
+    }
+    experiment.at("plot").members();
+    const std::string name = std::filesystem::path(path).stem().string() + "." + options.format;
+    const auto file = std::filesystem::path(options.folder) / name;
+    drawings.push_back({path, file, temporary_beside(file)});
+  }
+  return drawings;
 }
 
-void plot_result(const std::filesystem::path& result, const std::filesystem::path& file, const std::string& format) {
-  const auto temporary = temporary_beside(file);
-  const auto outcome = run_python(plot_script, {temporary.string(), format, result.string()});
+/// What the script says of a plot that it could not draw.
+std::string why_not_drawn(const std::string& result, const PythonOutcome& outcome) {
+  const std::string begin = fmt::format("cannot be drawn: {}: ", result);
+  const auto line = std::find_if(outcome.errors.begin(), outcome.errors.end(),
+                                 [&begin](const std::string& error) { return error.starts_with(begin); });
+  return one_line(line == outcome.errors.end() ? outcome.last_error() : line->substr(begin.size()));
+}
+
+/// Draws them; returns how many there are now, and says why the others are not.
+std::size_t draw(const std::vector<Drawing>& drawings, const std::string& format) {
+  std::vector<std::string> arguments{format};
+  for (const Drawing& drawing : drawings) {
+    arguments.push_back(drawing.result);
+    arguments.push_back(drawing.temporary.string());
+  }
+  const PythonOutcome outcome = run_python(plot_script, arguments);
+  constexpr int no_matplotlib = 3;
+  if (outcome.status == no_matplotlib)
+    throw MissingError(
+        fmt::format("python cannot import matplotlib ({}); install python3-matplotlib", outcome.last_error()));
   std::error_code ignored;
-  if (outcome.status == 0 && std::filesystem::exists(temporary, ignored)) return move_into_place(temporary, file);
-  std::filesystem::remove(temporary, ignored);
-  throw InputError(fmt::format("{}: cannot be plotted: {}", result.string(), outcome.last_error));
+  std::size_t drawn = 0;
+  // Where Python itself broke off, a file may be half a plot: then each is drawn alone.
+  if (outcome.status != 0 && drawings.size() > 1) {
+    for (const Drawing& drawing : drawings) drawn += draw({drawing}, format);
+    return drawn;
+  }
+  for (const Drawing& drawing : drawings) {
+    if (outcome.status == 0 && std::filesystem::exists(drawing.temporary, ignored)) {
+      move_into_place(drawing.temporary, drawing.file);
+      ++drawn;
+      continue;
+    }
+    std::filesystem::remove(drawing.temporary, ignored);
+    say(fmt::format("{}: cannot be plotted: {}", drawing.result, why_not_drawn(drawing.result, outcome)));
+  }
+  return drawn;
+}
+
+int plot_results(const PlotOptions& options) {
+  const std::vector<Drawing> drawings = drawings_of(options);
+  if (drawings.empty()) return 0;
+  make_folder(options.folder);
+  constexpr int bad_input = 2;
+  return draw(drawings, options.format) > 0 ? 0 : bad_input;
+}
+
+std::function<int()> describe(CommandOptions& add) {
+  const auto options = std::make_shared<PlotOptions>();
+  add.operands("result", options->results, "JSON files");
+  add.text("-o", "DIR", options->folder, "Write NAME.FORMAT into this folder (default: the current one)");
+  add.word("--format", options->format, {"svg", "png", "pdf"}, "svg (default), png or pdf");
+  return [options] { return plot_results(*options); };
 }
 
 }  // namespace
 
-int plot_results(const PlotOptions& options) {
-  for (const std::string& path : options.results) read_result(path).at("experiment").at("plot").members();
-  require_matplotlib();
-  make_folder(options.folder);
-  for (const std::string& path : options.results) {
-    const std::filesystem::path result(path);
-    plot_result(result, std::filesystem::path(options.folder) / (result.stem().string() + "." + options.format),
-                options.format);
-  }
-  return 0;
-}
+extern const Command plot_command;
+const Command plot_command{.name = "plot",
+                           .summary = "Draw the plots of results",
+                           .example = "raytruth plot results/xi_adaptive.json -o plots",
+                           .notes = "",
+                           .describe = describe};
 
 }  // namespace raytruth

@@ -1,5 +1,5 @@
 #include "experiments/output.hpp"
-#include "program/commands.hpp"
+#include "program/command.hpp"
 #include "program/progress_bar.hpp"
 #include "raytruth/documents/scene_document.hpp"
 #include "raytruth/images/image_file.hpp"
@@ -17,6 +17,16 @@ namespace raytruth {
 
 namespace {
 
+struct RenderOptions {
+  std::string scene;
+  std::string file;  ///< of the image
+  int threads = 0;
+  bool is_linear = false;              ///< 8 bits are linear light, not sRGB
+  std::optional<std::string> opacity;  ///< a transfer function's file, whose opacities are taken
+  bool ignores_gradient_opacity = false;
+  std::string data;
+};
+
 /// Renders, telling on a terminal how far it is.
 Rendering render(const Renderer& renderer) {
   constexpr std::size_t parts = 100;
@@ -28,8 +38,6 @@ Rendering render(const Renderer& renderer) {
     bar.show("rendering");
   });
 }
-
-}  // namespace
 
 int render_scene(const RenderOptions& options) {
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
@@ -71,5 +79,29 @@ int render_scene(const RenderOptions& options) {
   print(result.dump(2) + "\n");
   return 0;
 }
+
+std::function<int()> describe(CommandOptions& add) {
+  const auto options = std::make_shared<RenderOptions>();
+  add.operand("scene", options->scene, "JSON file; '-' is standard input");
+  add.required_text("-o", "FILE", options->file,
+                    "The image: .png (8 bits, over black), .pfm or .npy (linear light, binary32)");
+  add.threads(options->threads);
+  add.flag("--linear", options->is_linear, "Write linear light into a .png, instead of sRGB");
+  add.text("--opacity", "FILE", options->opacity,
+           "Take the opacities of this transfer function, for colour maps without");
+  add.flag("--ignore-gradient-opacity", options->ignores_gradient_opacity,
+           "Accept transfer functions whose opacity depends on the gradient, and leave that out");
+  add.data(options->data);
+  return [options] { return render_scene(*options); };
+}
+
+}  // namespace
+
+extern const Command render_command;
+const Command render_command{.name = "render",
+                             .summary = "Render a scene, by any scheme or certified",
+                             .example = "raytruth render scene.json -o image.png",
+                             .notes = "",
+                             .describe = describe};
 
 }  // namespace raytruth

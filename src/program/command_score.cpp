@@ -1,5 +1,5 @@
 #include "experiments/output.hpp"
-#include "program/commands.hpp"
+#include "program/command.hpp"
 #include "raytruth/core/one_line.hpp"
 #include "raytruth/documents/conformance/vectors_score.hpp"
 #include "raytruth/documents/json/input.hpp"
@@ -16,15 +16,20 @@ namespace raytruth {
 
 namespace {
 
+struct ScoreOptions {
+  std::string vectors;
+  std::string answers;
+  bool json = false;
+};
+
 using Json = nlohmann::ordered_json;
 
 Certified read_truth(const JsonReader& json) {
   json.only({"color", "opacity", "error_bound"});
   const auto color = json.at("color").numbers(3);
   if (color.size() != 3) json.at("color").refuse_value("a list of 3 numbers");
-  return {.color = {color[0], color[1], color[2]},
-          .opacity = json.at("opacity").number(),
-          .radius = json.at("error_bound").number(0)};
+  return {{.color = {color[0], color[1], color[2]}, .opacity = json.at("opacity").number()},
+          json.at("error_bound").number(0)};
 }
 
 /// Of the vectors what a score needs: their answers are still to come.
@@ -91,8 +96,6 @@ std::string scores_text(const std::vector<LevelScore>& scores) {
   return text;
 }
 
-}  // namespace
-
 int score_answers(const ScoreOptions& options) {
   std::vector<ScoredVector> vectors = read_vectors(options.vectors);
   take_answers(vectors, options);
@@ -100,5 +103,28 @@ int score_answers(const ScoreOptions& options) {
   print(options.json ? scores_json(scores).dump(2) + "\n" : scores_text(scores));
   return 0;
 }
+
+std::function<int()> describe(CommandOptions& add) {
+  const auto options = std::make_shared<ScoreOptions>();
+  add.operand("vectors", options->vectors, "JSON file, written by `raytruth vectors`");
+  add.operand("answers", options->answers, "CSV file with the header id,r,g,b,opacity; '-' is standard input");
+  add.flag("--json", options->json, "As JSON");
+  return [options] { return score_answers(*options); };
+}
+
+}  // namespace
+
+extern const Command score_command;
+const Command score_command{
+    .name = "score",
+    .summary = "Count the digits that are right in a program's answers to the vectors",
+    .example = "raytruth score vectors.json answers.csv",
+    .notes =
+        "Digits of an answer: -log10(error / scale), of colour and opacity the lesser one. The colour's\n"
+        "error is that of its worst channel, its scale the largest channel of the certified colour; the\n"
+        "opacity's scale is the certified opacity. Errors below the certified error_bound, or 2^-53 of the\n"
+        "scale, count as that much; errors above the scale have no digits, nor has a vector without an\n"
+        "answer. Ids that are not in the vectors are refused.",
+    .describe = describe};
 
 }  // namespace raytruth

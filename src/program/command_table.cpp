@@ -1,6 +1,6 @@
 #include "experiments/output.hpp"
 #include "experiments/result.hpp"
-#include "program/commands.hpp"
+#include "program/command.hpp"
 #include "raytruth/documents/table_case.hpp"
 #include "raytruth/tables/table_file.hpp"
 
@@ -15,6 +15,12 @@
 namespace raytruth {
 
 namespace {
+
+struct TableOptions {
+  std::string table_case;
+  std::string file;
+  int threads = 0;
+};
 
 using Json = nlohmann::ordered_json;
 using MakeBytes = std::string (*)(const std::vector<std::size_t>&, const std::vector<double>&, const TableFormat&);
@@ -42,8 +48,6 @@ Json description(const TableCase& asked, const MadeTable& table, const std::file
   text["build"] = build_identity();
   return text;
 }
-
-}  // namespace
 
 int write_table(const TableOptions& options) {
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
@@ -77,5 +81,31 @@ int write_table(const TableOptions& options) {
   move_into_place(temporary, file);
   return 0;
 }
+
+std::function<int()> describe(CommandOptions& add) {
+  const auto options = std::make_shared<TableOptions>();
+  add.operand("case", options->table_case, "JSON file; '-' is standard input");
+  add.required_text("-o", "FILE", options->file,
+                    "Write this file, .npy or .nrrd, and FILE.json beside it, with its error");
+  add.threads(options->threads);
+  return [options] { return write_table(*options); };
+}
+
+}  // namespace
+
+extern const Command table_command;
+const Command table_command{
+    .name = "table",
+    .summary = "Make a pre-integration table for a renderer, and measure its error",
+    .example = "raytruth table table.json -o table.npy",
+    .notes =
+        "A case:\n"
+        "  {\"transfer_function\": {\"points\": [{\"s\": 0, \"extinction\": 0, \"color\": [0, 0, 0]},\n"
+        "                                    {\"s\": 255, \"extinction\": 2, \"color\": [1, 0.5, 0.2]}]},\n"
+        "   \"builder\": \"exact\", \"size\": 256, \"length\": 1, \"range\": [0, 255], \"format\": \"float32\"}\n\n"
+        "`raytruth list tables` tells the builders. Those over three scalars are for slabs whose scalar is a "
+        "parabola;\n"
+        "psi of Moreland and Angel takes \"builder\", \"size\" and \"format\" alone.",
+    .describe = describe};
 
 }  // namespace raytruth

@@ -49,6 +49,32 @@ class Panels(ProgramTest):
                 image = self.drawn(changed(PANELS, "/plot/panels", [panel]))
                 self.assertEqual(len(re.findall(f'<use [^>]*style="{hollow}', image)), zeros)
 
+    def test_a_panel_without_rows_says_why(self):
+        absent = {"name": "absent", "kind": "volume", "volume": "no_such_volume"}
+        panels = [{**POINTS, "rows": {"measure": "signal_error", "field": "absent"}}, {**LINES, "rows": {"measure": "cell_cubic"}},
+                  {"kind": "image", "rows": {"field": "absent"}, "line": "fetches_mean", "pixels": "field", "label": "picture"}, POINTS]
+        image = self.drawn(changed(changed(PANELS, "/fields/2", absent), "/plot/panels", panels))
+        self.assertEqual(image.count(">No data</text>"), 3)
+        self.assertIn(">absent: no_such_volume: no such volume in</text>", image)
+        self.assertIn(">no row with measure cell cubic has what</text>", image)
+        self.assertEqual(image.count(">points of xi</text>"), 2)
+
+    def test_a_plot_that_fails_stops_no_other(self):
+        result = self.json_of("run", self.write("experiment.json", PANELS))
+        self.write("good.json", result)
+        del result["experiment"]["plot"]["title"]
+        self.write("bad.json", result)
+        del result["experiment"]["plot"]
+        self.write("none.json", result)
+        done = self.run_program("plot", "none.json", "bad.json", "good.json", "-o", "plots")
+        self.assertEqual(done.returncode, 0)
+        lines = done.stderr.decode().splitlines()
+        self.assertEqual(len(lines), 2)
+        self.assertEqual(lines[0], "raytruth: none.json: its experiment asks for no plot")
+        self.assertTrue(lines[1].startswith("raytruth: bad.json: cannot be plotted: KeyError"), lines[1])
+        self.assertEqual([path.name for path in (self.folder / "plots").iterdir()], ["good.svg"])
+        self.assert_refused(self.run_program("plot", "bad.json", "-o", "plots"), "bad.json: cannot be plotted: KeyError")
+
     def test_schema_and_program_agree_on_panels(self):
         schema = validator("experiment")
         for what, document in mutations(PANELS):

@@ -114,13 +114,13 @@ class Plots(ProgramTest):
         return {"RAYTRUTH_PYTHON": str(path)}
 
     def test_without_matplotlib(self):
-        without = self.interpreter("echo 'ModuleNotFoundError: no matplotlib' >&2; exit 1\n")
+        without = self.interpreter("echo 'no matplotlib: none' >&2; exit 3\n")
         self.assert_refused(self.run_program("plot", "small.json", environment=without), "python3-matplotlib", code=3)
         nowhere = {"RAYTRUTH_PYTHON": "/no/such/python"}
         self.assert_refused(self.run_program("plot", "small.json", environment=nowhere), "python3-matplotlib", code=3)
 
     def test_plot_appears_whole_or_not_at_all(self):
-        fake = self.interpreter('[ $# -lt 3 ] && exit 0; echo half > "$3"; [ "$4" = png ] && exit 0; echo Broken >&2; exit 1\n')
+        fake = self.interpreter('echo half > "$5"; [ "$3" = png ] && exit 0; echo Broken >&2; exit 1\n')
         before = self.names_in_folder()
         self.assert_refused(self.run_program("plot", "small.json", environment=fake), "small.json", "Broken")
         self.assertEqual(self.names_in_folder(), before)

@@ -88,9 +88,38 @@ class Results(ProgramTest):
         done = self.run_program("run", "small.json")
         table = done.stderr.decode().splitlines()
         self.assertEqual(table[0].split(), ["claim", "published", "measured", "verdict"])
-        self.assertEqual(len(table), 4)
+        self.assertEqual(len(table), 5)
+        self.assertEqual(table.pop(), "raytruth: small: 1 of 1 checks hold")
         self.assertTrue(table[1].startswith("figure") and table[1].endswith("reproduced"))
         self.assertEqual(len({line.index(word) for line, word in zip(table, ["verdict", "reproduced", "reproduced", "not"])}), 1)
+
+    def test_quick_runs_say_that_they_have_no_verdicts(self):
+        words = self.run_program("run", "small.json", "--profile", "quick").stderr.decode().splitlines()
+        self.assertEqual(len(words), 2)
+        self.assertIn("no verdicts", words[0])
+        self.assertIn("1 of 1 checks hold", words[1])
+
+    def test_says_where_nothing_is_claimed(self):
+        self.write("small.json", changed(changed(EXPERIMENT, "/published", []), "/checks", []))
+        self.assertEqual(self.run_program("run", "small.json").stderr, b"raytruth: small: no publication claims anything of it\n")
+
+    def test_other_rows_answer_where_a_volume_is_absent(self):
+        document = changed(EXPERIMENT, "/fields/2", VOLUME)
+        document = changed(document, "/checks/0/rows/field", ["absent"])
+        document = changed(document, "/published/1/rows/field", "absent")
+        self.assertFalse(self.result(document=document)["checks"][0]["holds"])
+        self.assertIn(b"nothing to measure: continuous", self.run_program("run", "small.json").stderr)
+        other = {"measure": "cell_cubic", "field": "white"}
+        document = changed(changed(document, "/checks/0/otherwise", other), "/published/1/otherwise", other)
+        result = self.result(document=document)
+        self.assertEqual((result["checks"][0]["holds"], result["published"][1]["verdict"]), (True, "reproduced"))
+        for said in (result["checks"][0], result["published"][1]):
+            self.assertEqual(said["why"], "all rows of absent are refused: these are of white")
+        # The quick version has other fields: what answers otherwise is all that is left.
+        quick = changed(document, "/quick/fields", EXPERIMENT["fields"])
+        quick = self.result("--profile", "quick", document=quick)["experiment"]
+        self.assertEqual(quick["checks"][0]["rows"], other)
+        self.assertNotIn("otherwise", quick["checks"][0])
 
     def test_bounds(self):
         result = self.result("--check")
@@ -217,6 +246,33 @@ class Files(ProgramTest):
         text = (self.folder / "out/small.json").read_text()
         self.assertTrue(json.loads(text)["provenance"]["resumed"])
         self.assertEqual(rows_text(text), rows_text(self.output_of("run", "small.json")))
+
+    def test_ctrl_c_names_what_goes_on(self):
+        self.write("small.json", changed(EXPERIMENT, "/rays/count", 2000000))
+        for arguments, words in [(["-o", "out", "-j", "1"], "raytruth run small.json -j 1 -o out --resume"), (["-j", "1"], "-o DIR")]:
+            running = subprocess.Popen([PROGRAM, "run", "small.json", *arguments], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            time.sleep(0.5)
+            running.send_signal(signal.SIGINT)
+            said = running.communicate()[1].decode()
+            self.assertEqual(running.returncode, -signal.SIGINT)
+            self.assertEqual(said.count("\n"), 2)
+            self.assertIn(words, said)
+
+    def test_an_experiment_is_found_by_its_name(self):
+        (self.folder / "experiments").mkdir()
+        (self.folder / "small.json").rename(self.folder / "experiments/small.json")
+        done = self.run_program("run", "small", "-o", "out")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn(b"raytruth: small: experiments/small.json\n", done.stderr)
+        self.assertIn("experiments, in experiments\n", self.output_of("list", "experiments"))
+        self.assert_refused(self.run_program("run", "smal"), "smal: no such file", "experiments (perhaps small)")
+        # Elsewhere those of the source tree that the program was built in are at hand.
+        elsewhere = self.folder / "out"
+        listed = subprocess.run([PROGRAM, "list", "experiments", "--json"], cwd=elsewhere, stdout=subprocess.PIPE)
+        for entry in json.loads(listed.stdout):
+            self.assertTrue((elsewhere / entry["file"]).is_file())
+        found = subprocess.run([PROGRAM, "run", "spheres", "--profile", "quick"], cwd=elsewhere, capture_output=True)
+        self.assertEqual(found.returncode, 0, found.stderr)
 
     def test_resume_leaves_a_finished_result_alone(self):
         self.output_of("run", "small.json", "-o", "out")

@@ -58,7 +58,6 @@ BEYOND_CASE_SCHEMA = re.compile(
 BEYOND_EXPERIMENT_SCHEMA = re.compile(
     r"""
       /fields/\d/name\ =\ "word"  # the checks name the fields
-    | /fields/\d/smoothing\ =\ 1e\+300
     | /rays/length\ =\ 1e\+300
     | .*/rows?(\ =\ {"a":\ 1}|/unknown)
     | .*/rows?/field(/\d)?\ =\ "word"
@@ -222,7 +221,9 @@ class Validity(ProgramTest):
         self.assertEqual(SCHEMAS["case"]["$defs"]["shading"]["enum"], [entry["name"] for entry in self.json_of("list", "shadings", "--json")])
         signal_schemes = [entry["name"] for entry in self.json_of("list", "schemes", "--json") if "signal_order" in entry]
         self.assertEqual(SCHEMAS["experiment"]["$defs"]["signal_scheme"]["enum"], signal_schemes)
-        for kind, name, place in [("fields", "experiment", "field"), ("measures", "experiment", "measure"), ("transfers", "experiment", "transfer"),
+        generated = {option["properties"]["kind"]["const"] for option in SCHEMAS["case"]["$defs"]["generated_field"]["oneOf"]}
+        self.assertEqual(generated | {"volume"}, {entry["name"] for entry in self.json_of("list", "fields", "--json")})
+        for kind, name, place in [("measures", "experiment", "measure"), ("transfers", "experiment", "transfer"),
                                   ("samplings", "experiment", "sampling"), ("samplings", "case", "sampling"), ("signals", "case", "signal")]:
             listed = {entry["name"] for entry in self.json_of("list", kind, "--json")}
             kinds = [option["properties"]["kind"] for option in SCHEMAS[name]["$defs"][place]["oneOf"]]

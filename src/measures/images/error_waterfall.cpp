@@ -1,8 +1,7 @@
 #include "experiments/measure.hpp"
 #include "measures/images/drawing.hpp"
-#include "measures/images/grid_view.hpp"
 #include "measures/images/pictures.hpp"
-#include "raytruth/core/named.hpp"
+#include "measures/images/studied_view.hpp"
 #include "raytruth/images/image_error.hpp"
 #include "raytruth/render/renderer.hpp"
 #include "raytruth/signals/field_kind.hpp"
@@ -16,6 +15,9 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace raytruth {
 
@@ -43,11 +45,8 @@ constexpr std::string_view stage_description =
 using Stages = std::bitset<stage_names.size()>;
 
 struct View {
-  std::string name;
-  std::string field;
-  const NamedTransfer* transfer = nullptr;
-  GridView camera;
-  Scene drawing = {.transfer = PiecewiseLinear(std::vector<TransferPoint>(1))};
+  StudiedView seen;
+  Scene drawing;  ///< its members that say how to render; the others have no meaning
 };
 
 struct Options {
@@ -66,20 +65,11 @@ Options read_options(const Experiment& experiment, const JsonReader& json) {
   renderer.at("step").positive_number();
   for (const JsonReader& item : json.at("views").items()) {
     item.only({"name", "field", "transfer", "camera", "shading"});
-    View view{
-        .name = item.at("name").text(), .field = item.at("field").word(names_of(experiment.fields)), .camera = {}};
-    const auto names = names_of(options.views);
-    if (std::find(names.begin(), names.end(), view.name) != names.end())
-      item.at("name").refuse_value("a name that no other view has");
-    const std::string transfer = item.at("transfer").word(names_of(experiment.transfers));
-    view.transfer = &*std::find_if(experiment.transfers.begin(), experiment.transfers.end(),
-                                   [&](const NamedTransfer& known) { return known.name == transfer; });
-    view.camera = read_grid_view(item.at("camera"), size);
+    StudiedView seen = read_studied_view(experiment, item, size, names_of_views(options.views));
     Json drawing = renderer.json();
     drawing["scheme"] = "order1";
     if (const auto shading = item.find("shading")) drawing["shading"] = shading->json();
-    view.drawing = read_drawing(std::move(drawing), item);
-    options.views.push_back(std::move(view));
+    options.views.push_back({std::move(seen), read_drawing(std::move(drawing), item)});
   }
   options.entries = static_cast<std::size_t>(json.at("entries").integer(2, most_entries));
   options.gain = json.at("gain").number(1, largest_gain);
@@ -112,19 +102,46 @@ Light light_of(const Image& image) {
   return light;
 }
 
-class ViewRows {
+/// The true image.
+struct Truth {
+  double radius;  ///< the largest
+  std::int64_t not_converged;
+};
+
+/// A difference of two images, and what it is to the truth and to the whole error.
+struct StageError {
+  double rmse;
+  double maximum;
+  double bias;
+  std::optional<double> danskin_hanrahan;  ///< %; none where the truth is black
+  std::optional<double> share;             ///< %; none where the renderer makes no error
+};
+
+/// What a view tells of: its truth, an error, or a line of a picture.
+struct Record {
+  std::string view;
+  std::string transfer;
+  std::string_view part;
+  std::optional<std::string_view> stage = {};
+  std::optional<StageError> error = {};
+  std::optional<double> rmse_left = {};  ///< once the stages so far are mended
+  std::optional<Truth> truth = {};
+  std::optional<PictureLine> picture = {};
+};
+
+/// Renders a view with the truth in some stages, and takes the differences.
+class ViewStudy {
  public:
-  ViewRows(const Experiment& experiment, const Options& options, const View& view, const Grid& grid)
+  ViewStudy(const Experiment& experiment, const Options& options, const View& view, const Grid& grid)
       : experiment_(experiment), options_(options), view_(view), grid_(grid), rounding_(rounding()) {
     const Rendering truth = Renderer(scene_with(Stages().set())).render();
     truth_ = truth.image;
     const Image ours = image_with({});
     total_ = light_of(ours) - light_of(truth_);
 
-    Row& row = add("truth", {});
-    row.insert(row.end(), {{"radius", *std::max_element(truth.radii.begin(), truth.radii.end())},
-                           {"not_converged", truth.not_converged}});
-    add_errors("all", {}, total_);
+    add("truth", {}).truth = {.radius = *std::max_element(truth.radii.begin(), truth.radii.end()),
+                              .not_converged = truth.not_converged};
+    add_error("all", {}, total_);
     for (std::size_t i = 0; i < stage_names.size(); ++i)
       if (const auto stage = static_cast<Stage>(i); !is_missing(stage)) alone_.emplace(stage, alone(stage));
     add_one_by_one("alone", [this](Stage stage) -> Light { return light_of(alone_.at(stage)) - light_of(truth_); });
@@ -134,20 +151,16 @@ class ViewRows {
     add_pictures(ours);
   }
 
-  std::vector<Row> rows;
+  std::vector<Record> records;
 
  private:
   [[nodiscard]] bool is_missing(Stage stage) const { return stage == shading && !view_.drawing.shading; }
 
   /// With the truth in these stages; what is beyond the pixel is added by `image_with`.
   [[nodiscard]] Scene scene_with(const Stages& is_true) const {
-    Scene scene = view_.drawing;
-    scene.grid = grid_;
-    scene.emission = experiment_.emission;
-    scene.camera = aimed(view_.camera, grid_);
+    Scene scene = scene_of(view_.seen, view_.drawing, experiment_, grid_);
     scene.field = is_true[reconstruction] ? FieldKind::bspline_prefiltered : FieldKind::trilinear;
-    scene.transfer = is_true[classification] ? view_.transfer->transfer
-                                             : in_8_bits(view_.transfer->transfer, options_.entries, *scene.step);
+    if (!is_true[classification]) scene.transfer = in_8_bits(scene.transfer, options_.entries, *scene.step);
     if (is_true[early_termination]) scene.opaque = std::numeric_limits<double>::infinity();
     if (is_true[shading] && scene.shading) scene.shading->method = nullptr;
     // Both are exact along the ray; only the second ends early, and knows methods of shading.
@@ -193,20 +206,23 @@ class ViewRows {
     return image;
   }
 
-  Row& add(std::string_view part, const Value& stage) {
-    return rows.emplace_back(
-        Row{{"view", view_.name}, {"transfer", view_.transfer->name}, {"part", std::string(part)}, {"stage", stage}});
+  Record& add(std::string_view part, std::optional<std::string_view> stage) {
+    return records.emplace_back(
+        Record{.view = view_.seen.name, .transfer = view_.seen.transfer.name, .part = part, .stage = stage});
   }
 
-  void add_errors(std::string_view part, const Value& stage, const Light& error) {
+  Record& add_error(std::string_view part, std::optional<std::string_view> stage, const Light& error) {
     const double light = light_of(truth_).sum();
     const double squares = total_.square().sum();
-    Row& row = add(part, stage);
-    row.insert(row.end(), {{"rmse", std::sqrt(error.square().mean())},
-                           {"maximum", error.abs().maxCoeff()},
-                           {"bias", error.mean()},
-                           {"danskin_hanrahan", light > 0 ? Value(100 * error.abs().sum() / light) : Value()},
-                           {"share", squares > 0 ? Value(100 * (error * total_).sum() / squares) : Value()}});
+    Record& record = add(part, stage);
+    record.error = {.rmse = std::sqrt(error.square().mean()),
+                    .maximum = error.abs().maxCoeff(),
+                    .bias = error.mean(),
+                    .danskin_hanrahan = {},
+                    .share = {}};
+    if (light > 0) record.error->danskin_hanrahan = 100 * error.abs().sum() / light;
+    if (squares > 0) record.error->share = 100 * (error * total_).sum() / squares;
+    return record;
   }
 
   /// The difference that each stage makes, and what of the total error they leave over.
@@ -217,9 +233,9 @@ class ViewRows {
       if (is_missing(stage)) continue;
       const Light difference = difference_of(stage);
       left -= difference;
-      add_errors(part, std::string(stage_names[i]), difference);
+      add_error(part, stage_names[i], difference);
     }
-    add_errors(part, "interaction", left);
+    add_error(part, "interaction", left);
   }
 
   /// The errors that are left when stage after stage is mended: down to the truth's.
@@ -230,20 +246,21 @@ class ViewRows {
       is_true.set(i);
       if (is_missing(static_cast<Stage>(i))) continue;
       const Light light = light_of(is_true.all() ? truth_ : image_with(is_true));
-      add_errors("in turn", std::string(stage_names[i]), before - light);
-      rows.back().emplace_back("rmse_left", std::sqrt((light - light_of(truth_)).square().mean()));
+      add_error("in turn", stage_names[i], before - light).rmse_left =
+          std::sqrt((light - light_of(truth_)).square().mean());
       before = light;
     }
   }
 
+  void add_picture(std::optional<std::string_view> stage, std::vector<PictureLine> lines) {
+    for (PictureLine& line : lines) add("picture", stage).picture = std::move(line);
+  }
+
   void add_pictures(const Image& ours) {
-    const auto keys = [this](const Value& stage) {
-      return Row{{"view", view_.name}, {"transfer", view_.transfer->name}, {"part", "picture"}, {"stage", stage}};
-    };
-    add_picture(rows, keys({}), color_lines(truth_));
-    add_picture(rows, keys("all"), error_lines(ours, truth_, options_.gain));
+    add_picture({}, color_lines(truth_));
+    add_picture("all", error_lines(ours, truth_, options_.gain));
     for (const auto& [stage, image] : alone_)
-      add_picture(rows, keys(std::string(stage_names[stage])), error_lines(image, truth_, options_.gain));
+      add_picture(stage_names[stage], error_lines(image, truth_, options_.gain));
   }
 
   const Experiment& experiment_;
@@ -256,44 +273,81 @@ class ViewRows {
   Light total_;
 };
 
-}  // namespace
+Columns<StageError> error_columns() {
+  return {
+      {.name = "rmse",
+       .unit = "of white",
+       .description = "root mean square of the difference, light in [0, 1]",
+       .cell = &StageError::rmse},
+      {.name = "maximum",
+       .unit = "of white",
+       .description = "its largest magnitude in a channel",
+       .cell = &StageError::maximum},
+      {.name = "bias", .unit = "of white", .description = "its mean", .cell = &StageError::bias},
+      {.name = "danskin_hanrahan",
+       .unit = "%",
+       .description = "100 sum of its magnitudes / sum of the truth",
+       .cell = &StageError::danskin_hanrahan},
+      {.name = "share",
+       .unit = "%",
+       .description = "of the renderer's error E: 100 <difference, E> / <E, E>; those of a part add up to 100",
+       .cell = &StageError::share},
+  };
+}
 
-std::vector<Column> error_waterfall_columns(const Experiment& experiment, const JsonReader& options) {
-  read_options(experiment, options);
-  std::vector<Column> columns{
-      {.name = "view", .unit = "", .description = "what is looked at", .is_key = true},
-      {.name = "transfer", .unit = "", .description = "its transfer function", .is_key = true},
+Columns<Truth> truth_columns() {
+  return {
+      {.name = "radius",
+       .unit = "of white",
+       .description = "of the true image, largest; of a lit one measured",
+       .cell = &Truth::radius},
+      {.name = "not_converged",
+       .description = "pixels whose radius is wider than was asked for",
+       .cell = &Truth::not_converged},
+  };
+}
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns{
+      {.name = "view", .description = "what is looked at", .is_key = true, .cell = &Record::view},
+      {.name = "transfer", .description = "its transfer function", .is_key = true, .cell = &Record::transfer},
       {.name = "part",
-       .unit = "",
        .description = "truth: the true image; all: the error of the renderer's; alone: of the truth but for one stage "
                       "(shading and early_termination: what they do to the trilinear truth); "
                       "mended: what the renderer's error loses when one stage becomes true; in turn: the same, stage "
                       "after stage, each staying true; picture: the true image, or an error",
-       .is_key = true},
+       .is_key = true,
+       .cell = &Record::part},
       {.name = "stage",
-       .unit = "",
        .description =
            std::string(stage_description) + ". interaction: the renderer's error minus the sum of the others",
-       .is_key = true},
-      {.name = "rmse", .unit = "of white", .description = "root mean square of the difference, light in [0, 1]"},
-      {.name = "maximum", .unit = "of white", .description = "its largest magnitude in a channel"},
-      {.name = "bias", .unit = "of white", .description = "its mean"},
-      {.name = "danskin_hanrahan", .unit = "%", .description = "100 sum of its magnitudes / sum of the truth"},
-      {.name = "share",
-       .unit = "%",
-       .description = "of the renderer's error E: 100 <difference, E> / <E, E>; those of a part add up to 100"},
-      {.name = "rmse_left", .unit = "of white", .description = "of the image then, against the truth"},
-      {.name = "radius", .unit = "of white", .description = "of the true image, largest; of a lit one measured"},
-      {.name = "not_converged", .unit = "", .description = "pixels whose radius is wider than was asked for"},
+       .is_key = true,
+       .cell = &Record::stage},
   };
-  append(columns, picture_columns());
+  append_part(columns, &Record::error, error_columns());
+  columns.push_back(
+      {.name = "rmse_left",
+       .unit = "of white",
+       .description = "of the image then, against the truth",
+       .cell = [](const Record& record) { return cell_if(record.rmse_left.has_value(), record.rmse_left); }});
+  append_part(columns, &Record::truth, truth_columns());
+  append_part(columns, &Record::picture, picture_columns());
   return columns;
 }
 
-std::vector<Row> error_waterfall_rows(const Experiment& experiment, const JsonReader& json, const Field& field) {
-  const Options options = read_options(experiment, json);
-  return rows_of_views(options.views, field, json,
-                       [&](const View& view) { return ViewRows(experiment, options, view, field.grid).rows; });
+std::vector<Record> records_of_field(const Experiment& experiment, const Options& options, const Field& field) {
+  return records_of_views(options.views, field,
+                          [&](const View& view) { return ViewStudy(experiment, options, view, field.grid).records; });
 }
+
+}  // namespace
+
+extern const Measure error_waterfall;
+const Measure error_waterfall{MeasureDefinition{
+    .name = "error_waterfall",
+    .summary = "what each stage of a renderer adds to an image's error, and what their interaction does",
+    .read = read_options,
+    .columns = columns,
+    .of_field = records_of_field}};
 
 }  // namespace raytruth

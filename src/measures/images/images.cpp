@@ -1,10 +1,8 @@
 #include "experiments/measure.hpp"
 #include "measures/images/drawing.hpp"
-#include "measures/images/grid_view.hpp"
 #include "measures/images/pictures.hpp"
 #include "measures/images/skipped_slabs.hpp"
-#include "raytruth/catalogue.hpp"
-#include "raytruth/core/named.hpp"
+#include "measures/images/studied_view.hpp"
 #include "raytruth/images/image_error.hpp"
 #include "raytruth/metrics/banding.hpp"
 #include "raytruth/render/renderer.hpp"
@@ -13,8 +11,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace raytruth {
 
@@ -36,13 +40,10 @@ struct Variant {
 
 /// What is looked at; its truth is the certified image, or, where it is lit, that of `reference`.
 struct View {
-  std::string name;
-  std::string field;
-  const NamedTransfer* transfer = nullptr;
-  GridView camera;
+  StudiedView seen;
+  Variant truth;
   FieldKind reconstruction = FieldKind::trilinear;
   Json shading = {};  ///< of its truth, and of its variants but for what they change; null: none
-  Variant truth = {.name = {}, .drawing = {.transfer = PiecewiseLinear(std::vector<TransferPoint>(1))}};
   std::vector<Variant> variants = {};
 };
 
@@ -63,37 +64,34 @@ struct Options {
   Pictures pictures;
 };
 
-/// A name that none of these is.
-template <class Name>
-std::string read_new_name(const JsonReader& json, const std::vector<Name>& names) {
-  std::string name = json.text();
-  if (name == certified || std::find(names.begin(), names.end(), name) != names.end())
-    json.refuse_value(fmt::format("a name that nothing else has, nor \"{}\",", certified));
-  return name;
-}
-
 std::vector<std::string> read_words(const JsonReader& json, const std::vector<std::string_view>& allowed) {
   std::vector<std::string> words;
   for (const JsonReader& item : json.items(0)) words.push_back(item.word(allowed));
   return words;
 }
 
-View read_view(const Experiment& experiment, const JsonReader& json, const std::array<std::int64_t, 2>& size) {
+/// These names and that of the certified image.
+std::vector<std::string_view> with_certified(std::vector<std::string_view> names) {
+  names.push_back(certified);
+  return names;
+}
+
+View read_view(const Experiment& experiment, const JsonReader& json, const std::array<std::int64_t, 2>& size,
+               const std::vector<View>& before) {
   json.only({"name", "field", "transfer", "camera", "reconstruction", "shading"});
-  View view;
-  view.field = json.at("field").word(names_of(experiment.fields));
-  const std::string transfer = json.at("transfer").word(names_of(experiment.transfers));
-  view.transfer = &*std::find_if(experiment.transfers.begin(), experiment.transfers.end(),
-                                 [&](const NamedTransfer& item) { return item.name == transfer; });
-  view.camera = read_grid_view(json.at("camera"), size);
+  StudiedView seen = read_studied_view(experiment, json, size, with_certified(names_of_views(before)));
+  Json truth{{"scheme", "reference"}};
+  const auto shading = json.find("shading");
+  if (shading) truth["shading"] = shading->json();
+  Scene drawing = read_drawing(truth, json);
+  View view{.seen = std::move(seen),
+            .truth = {.name = std::string(certified), .drawing = std::move(drawing), .scene = std::move(truth)}};
+  if (shading) view.shading = shading->json();
   if (const auto kind = json.find("reconstruction")) {
     const std::string word = kind->word({field_kind_names.begin(), field_kind_names.end()});
     view.reconstruction = static_cast<FieldKind>(std::find(field_kind_names.begin(), field_kind_names.end(), word) -
                                                  field_kind_names.begin());
   }
-  Json truth{{"scheme", "reference"}};
-  if (const auto shading = json.find("shading")) truth["shading"] = view.shading = shading->json();
-  view.truth = {.name = std::string(certified), .drawing = read_drawing(truth, json), .scene = truth};
   return view;
 }
 
@@ -119,11 +117,11 @@ Variant read_variant(const JsonReader& json, const View& view) {
 std::vector<std::string> read_variants(const JsonReader& json, std::vector<View>& views) {
   std::vector<std::string> names;
   for (const JsonReader& item : json.items()) {
-    names.push_back(read_new_name(item.at("name"), names));
+    names.push_back(read_new_name(item.at("name"), with_certified({names.begin(), names.end()})));
     std::vector<std::string> wanted;
-    if (const auto its_views = item.find("views")) wanted = read_words(*its_views, names_of(views));
+    if (const auto its_views = item.find("views")) wanted = read_words(*its_views, names_of_views(views));
     for (View& view : views)
-      if (wanted.empty() || std::find(wanted.begin(), wanted.end(), view.name) != wanted.end())
+      if (wanted.empty() || std::find(wanted.begin(), wanted.end(), view.seen.name) != wanted.end())
         view.variants.push_back(read_variant(item, view));
   }
   return names;
@@ -134,36 +132,28 @@ Options read_options(const Experiment& experiment, const JsonReader& json) {
   need_transfers(experiment);
   Options options;
   const auto size = read_image_size(json.at("size"));
-  for (const JsonReader& item : json.at("views").items()) {
-    std::string name = read_new_name(item.at("name"), names_of(options.views));
-    options.views.push_back(read_view(experiment, item, size));
-    options.views.back().name = std::move(name);
-  }
+  for (const JsonReader& item : json.at("views").items())
+    options.views.push_back(read_view(experiment, item, size, options.views));
   const std::vector<std::string> names = read_variants(json.at("variants"), options.views);
-  std::vector<std::string_view> variants(names.begin(), names.end());
+  const std::vector<std::string_view> variants(names.begin(), names.end());
   if (const auto window = json.find("banding_window"))
     options.window = window->integer(least_banding_window, std::min(size[0], size[1]));
   if (const auto against = json.find("against")) options.against = read_words(*against, variants);
   if (const auto baselines = json.find("baselines")) options.baselines = read_words(*baselines, variants);
   if (const auto pictures = json.find("pictures")) {
     pictures->only({"views", "images", "errors", "against", "gain"});
-    options.pictures.views = read_words(pictures->at("views"), names_of(options.views));
+    options.pictures.views = read_words(pictures->at("views"), names_of_views(options.views));
     options.pictures.errors = read_words(pictures->at("errors"), variants);
     options.pictures.gain = pictures->at("gain").number(1, largest_gain);
-    variants.push_back(certified);
-    options.pictures.images = read_words(pictures->at("images"), variants);
-    options.pictures.against = pictures->at("against").word(variants);
+    options.pictures.images = read_words(pictures->at("images"), with_certified(variants));
+    options.pictures.against = pictures->at("against").word(with_certified(variants));
   }
   return options;
 }
 
 Scene scene_of(const View& view, const Variant& variant, const Experiment& experiment, const Grid& grid) {
-  Scene scene = variant.drawing;
-  scene.grid = grid;
+  Scene scene = scene_of(view.seen, variant.drawing, experiment, grid);
   scene.field = variant.reconstruction.value_or(view.reconstruction);
-  scene.transfer = view.transfer->transfer;
-  scene.emission = experiment.emission;
-  scene.camera = aimed(view.camera, grid);
   return scene;
 }
 
@@ -181,10 +171,49 @@ const Variant* coarser(const std::vector<Variant>& variants, const Variant& vari
   return nullptr;
 }
 
-/// The column of what a variant is better by than a baseline.
-std::string gain_over(const std::string& baseline) { return "gain_over_" + baseline; }
-std::string closer_than(const std::string& baseline) { return "closer_than_" + baseline; }
-std::string banding_gain_over(const std::string& baseline) { return "banding_gain_over_" + baseline; }
+/// The certified image.
+struct CertifiedImage {
+  double radius;  ///< the largest
+  std::int64_t not_converged;
+  double mean_opacity;
+};
+
+/// The error by Danskin and Hanrahan, 1992.
+struct RelativeError {
+  double percent;
+  double radius;
+};
+
+/// The banding of an image's error, and how much more baselines have.
+struct BandingFound {
+  Banding banding;
+  std::vector<std::optional<double>> gains = {};  ///< dB, by baseline; none without it or where nothing is banded
+};
+
+/// A variant's image, or its 8-bit frame, against a reference.
+struct Comparison {
+  const Variant* variant;
+  bool is_frame;
+  ImageError error;
+  std::optional<RelativeError> relative = {};             ///< none where the truth is too uncertain
+  std::optional<BandingFound> banding = {};               ///< none of frames, or where it is not asked for
+  double radius = 0;                                      ///< of the reference, the largest
+  std::optional<double> order = {};                       ///< from the next coarser variant, if there is one
+  std::vector<std::optional<double>> gains = {};          ///< dB, by baseline
+  std::vector<std::optional<double>> closer_pixels = {};  ///< % of the pixels that differ, by baseline
+  std::optional<SkippedSlabs> skipped = {};               ///< where blocks are skipped
+};
+
+/// What a view tells of: its certified image, a comparison, or a line of a picture.
+struct Record {
+  std::string view;
+  std::string transfer;
+  std::string variant;
+  std::optional<std::string> against;
+  std::optional<CertifiedImage> truth = {};
+  std::optional<Comparison> comparison = {};
+  std::optional<PictureLine> picture = {};
+};
 
 /// A variant's image of a view.
 struct Rendered {
@@ -193,9 +222,10 @@ struct Rendered {
   Image frame;
 };
 
-class ViewRows {
+/// Renders a view in all ways, and compares the images.
+class ViewStudy {
  public:
-  ViewRows(const Experiment& experiment, const Options& options, const View& view, const Grid& grid)
+  ViewStudy(const Experiment& experiment, const Options& options, const View& view, const Grid& grid)
       : options_(options),
         view_(view),
         truth_(Renderer(scene_of(view, view.truth, experiment, grid)).render()),
@@ -206,33 +236,29 @@ class ViewRows {
       images_.push_back({&variant, std::move(image), std::move(frame)});
     }
     add_certified();
-    for (const Rendered& rendered : images_) add_errors(experiment, rendered, grid);
+    for (const Rendered& rendered : images_) add_comparisons(experiment, rendered, grid);
     add_pictures();
   }
 
-  std::vector<Row> rows;
+  std::vector<Record> records;
 
  private:
-  [[nodiscard]] Row keys(std::string_view variant, const Value& against) const {
-    return {{"view", view_.name},
-            {"transfer", view_.transfer->name},
-            {"variant", std::string(variant)},
-            {"against", against}};
+  Record& add(std::string_view variant, const std::optional<std::string>& against) {
+    return records.emplace_back(Record{.view = view_.seen.name,
+                                       .transfer = view_.seen.transfer.name,
+                                       .variant = std::string(variant),
+                                       .against = against});
   }
-
-  Row& add(std::string_view variant, const Value& against) { return rows.emplace_back(keys(variant, against)); }
 
   void add_certified() {
     const auto pixels = static_cast<double>(truth_.image.pixels.size());
     double opacity = 0;
     for (const auto& pixel : truth_.image.pixels) opacity += pixel[3];
-    Row& row = add(certified, {});
-    row.insert(row.end(), {{"frame", Value()},
-                           {"line", Value()},
-                           {"radius", *std::max_element(truth_.radii.begin(), truth_.radii.end())},
-                           {"not_converged", truth_.not_converged},
-                           {"mean_opacity", opacity / pixels}});
+    add(certified, {}).truth = {
+        .radius = largest_radius(), .not_converged = truth_.not_converged, .mean_opacity = opacity / pixels};
   }
+
+  [[nodiscard]] double largest_radius() const { return *std::max_element(truth_.radii.begin(), truth_.radii.end()); }
 
   [[nodiscard]] const Rendered* image_of(const Variant* wanted) const {
     const auto found =
@@ -247,66 +273,50 @@ class ViewRows {
     return found == images_.end() ? nullptr : &*found;
   }
 
-  void add_errors(const Experiment& experiment, const Rendered& rendered, const Grid& grid) {
+  void add_comparisons(const Experiment& experiment, const Rendered& rendered, const Grid& grid) {
     const double radii = std::accumulate(truth_.radii.begin(), truth_.radii.end(), 0.0);
-    Row& row = add_error(rendered, &Rendered::image, certified, truth_.image, radii);
-    add_skipped(row, scene_of(view_, *rendered.variant, experiment, grid));
-    add_error(rendered, &Rendered::frame, certified, truth_frame_);
+    add_comparison(rendered, &Rendered::image, certified, truth_.image, radii).skipped =
+        skipped_in(scene_of(view_, *rendered.variant, experiment, grid));
+    add_comparison(rendered, &Rendered::frame, certified, truth_frame_);
     for (const std::string& name : options_.against) {
       const Rendered* const other = image_of(name);
       if (other == nullptr || other == &rendered) continue;
-      add_error(rendered, &Rendered::image, name, other->image);
-      add_error(rendered, &Rendered::frame, name, other->frame);
+      add_comparison(rendered, &Rendered::image, name, other->image);
+      add_comparison(rendered, &Rendered::frame, name, other->frame);
     }
   }
 
   /// `radii`: the sum of the reference's.
-  Row& add_error(const Rendered& rendered, Image Rendered::*kind, std::string_view against, const Image& reference,
-                 double radii = 0) {
+  Comparison& add_comparison(const Rendered& rendered, Image Rendered::*kind, std::string_view against,
+                             const Image& reference, double radii = 0) {
     const Variant& variant = *rendered.variant;
-    const ImageError error = image_error(rendered.*kind, reference);
     const auto rmse_of = [&](const Rendered* other) {
       return other != nullptr ? image_error(other->*kind, reference).rmse : 0;
     };
-    const bool is_frame = kind == &Rendered::frame;
-    Row& row = add(variant.name, std::string(against));
-    row.insert(row.end(), {{"frame", is_frame ? "srgb8" : "linear"},
-                           {"line", Value()},
-                           {"scheme", variant.drawing.scheme},
-                           {"step", variant.drawing.step ? Value(*variant.drawing.step) : Value()}});
-    if (const auto& shading = variant.drawing.shading)
-      row.emplace_back("shading", shading->method != nullptr ? shading->method->name : "pointwise");
-    if (const auto& table = variant.drawing.table)
-      row.insert(row.end(), {{"table_size", static_cast<std::int64_t>(table->size)},
-                             {"table_format", std::string(table->format.name)}});
+    Comparison found{
+        .variant = &variant, .is_frame = kind == &Rendered::frame, .error = image_error(rendered.*kind, reference)};
+    const ImageError& error = found.error;
     if (const double light = light_of(reference); error.relative && light > 3 * radii)
-      row.insert(row.end(),
-                 {{"danskin_hanrahan", 100 * *error.relative},
-                  {"danskin_hanrahan_radius", 100 * (1 + *error.relative) * 3 * radii / (light - 3 * radii)}});
-    row.insert(row.end(), {{"rmse", error.rmse},
-                           {"psnr", error.psnr ? Value(*error.psnr) : Value()},
-                           {"maximum", error.maximum},
-                           {"column", error.place[0]},
-                           {"row", error.place[1]},
-                           {"bias", error.bias}});
-    if (options_.window && !is_frame) add_banding(row, rendered, reference);
-    if (!is_frame)
-      row.emplace_back("radius", radii > 0 ? *std::max_element(truth_.radii.begin(), truth_.radii.end()) : 0.0);
+      found.relative = {.percent = 100 * *error.relative,
+                        .radius = 100 * (1 + *error.relative) * 3 * radii / (light - 3 * radii)};
+    if (options_.window && !found.is_frame) found.banding = banding_of(rendered, reference);
+    if (radii > 0) found.radius = largest_radius();
     if (const double coarse = rmse_of(image_of(coarser(view_.variants, variant))); coarse > 0 && error.rmse > 0)
-      row.emplace_back("order", std::log2(coarse / error.rmse));
-    for (const std::string& name : options_.baselines)
-      if (const double base = rmse_of(image_of(name)); base > 0 && error.rmse > 0)
-        row.emplace_back(gain_over(name), 20 * std::log10(base / error.rmse));
-    for (const std::string& name : options_.baselines)
-      if (const Rendered* const base = image_of(name); base != nullptr && base != &rendered)
-        if (const auto share = share_closer(rendered.*kind, base->*kind, reference))
-          row.emplace_back(closer_than(name), 100 * *share);
-    return row;
+      found.order = std::log2(coarse / error.rmse);
+    for (const std::string& name : options_.baselines) {
+      const Rendered* const base = image_of(name);
+      const double of_base = rmse_of(base);
+      found.gains.push_back(of_base > 0 && error.rmse > 0 ? std::optional(20 * std::log10(of_base / error.rmse))
+                                                          : std::nullopt);
+      found.closer_pixels.push_back(
+          base != nullptr && base != &rendered ? percent_closer(rendered.*kind, base->*kind, reference) : std::nullopt);
+    }
+    return add(variant.name, std::string(against)).comparison.emplace(std::move(found));
   }
 
   /// Of the pixels in which two images differ by more than half a step of 8 bits, those in which the first is closer to
   /// the reference; by the largest channel.
-  static std::optional<double> share_closer(const Image& image, const Image& other, const Image& reference) {
+  static std::optional<double> percent_closer(const Image& image, const Image& other, const Image& reference) {
     constexpr double half_a_step = 1.0 / 510;
     std::int64_t different = 0;
     std::int64_t closer = 0;
@@ -318,19 +328,21 @@ class ViewRows {
       if (distance(color(image), color(reference)) < distance(color(other), color(reference))) ++closer;
     }
     if (different == 0) return {};
-    return static_cast<double>(closer) / static_cast<double>(different);
+    return 100 * (static_cast<double>(closer) / static_cast<double>(different));
   }
 
-  void add_banding(Row& row, const Rendered& rendered, const Image& reference) const {
-    const auto banding_of = [&](const Rendered& other) {
+  [[nodiscard]] BandingFound banding_of(const Rendered& rendered, const Image& reference) const {
+    const auto banding_in = [&](const Rendered& other) {
       return banding(signed_error(other.image, reference), reference.size, *options_.window);
     };
-    const Banding found = banding_of(rendered);
-    row.insert(row.end(), {{"banding", found.share}, {"banding_amplitude", found.amplitude}});
-    for (const std::string& name : options_.baselines)
-      if (const Rendered* const base = image_of(name); base != nullptr && found.amplitude > 0)
-        if (const double amplitude = banding_of(*base).amplitude; amplitude > 0)
-          row.emplace_back(banding_gain_over(name), 20 * std::log10(amplitude / found.amplitude));
+    BandingFound found{.banding = banding_in(rendered)};
+    for (const std::string& name : options_.baselines) {
+      auto& gain = found.gains.emplace_back();
+      if (const Rendered* const base = image_of(name); base != nullptr && found.banding.amplitude > 0)
+        if (const double amplitude = banding_in(*base).amplitude; amplitude > 0)
+          gain = 20 * std::log10(amplitude / found.banding.amplitude);
+    }
+    return found;
   }
 
   /// The mean of a pixel's channels.
@@ -347,31 +359,29 @@ class ViewRows {
     return light;
   }
 
-  static void add_skipped(Row& row, const Scene& scene) {
-    if (!scene.empty_space || scene.scheme != VirtualCatmullRom3::info.name) return;
-    const SkippedSlabs count = count_skipped_slabs(scene);
-    row.insert(row.end(),
-               {{"slabs", count.slabs},
-                {"slabs_skipped", 100 * static_cast<double>(count.skipped) / static_cast<double>(count.slabs)},
-                {"slabs_wrongly_skipped", count.wrong},
-                {"blocks", count.blocks},
-                {"blocks_skipped", count.skipped_blocks},
-                {"blocks_wrongly_skipped", count.wrong_blocks}});
+  static std::optional<SkippedSlabs> skipped_in(const Scene& scene) {
+    if (!scene.empty_space || scene.scheme != VirtualCatmullRom3::info.name) return std::nullopt;
+    return count_skipped_slabs(scene);
+  }
+
+  void add_picture(const std::string& variant, const std::optional<std::string>& reference,
+                   std::vector<PictureLine> lines) {
+    for (PictureLine& line : lines) add(variant, reference).picture = std::move(line);
   }
 
   void add_pictures() {
     const auto& [views, images, errors, against, gain] = options_.pictures;
-    if (std::find(views.begin(), views.end(), view_.name) == views.end()) return;
+    if (std::find(views.begin(), views.end(), view_.seen.name) == views.end()) return;
     const auto pixels_of = [this](const std::string& name) -> const Image& {
       const Rendered* const rendered = image_of(name);
       return rendered != nullptr ? rendered->image : truth_.image;
     };
     const auto is_here = [this](const std::string& name) { return name == certified || image_of(name) != nullptr; };
     for (const std::string& name : images)
-      if (is_here(name)) add_picture(rows, keys(name, {}), color_lines(pixels_of(name)));
+      if (is_here(name)) add_picture(name, {}, color_lines(pixels_of(name)));
     for (const std::string& name : errors)
       if (is_here(name) && is_here(against))
-        add_picture(rows, keys(name, against), error_lines(pixels_of(name), pixels_of(against), gain));
+        add_picture(name, against, error_lines(pixels_of(name), pixels_of(against), gain));
   }
 
   const Options& options_;
@@ -381,96 +391,263 @@ class ViewRows {
   std::vector<Rendered> images_;
 };
 
-}  // namespace
+// --- Columns ---
 
-std::vector<Column> images_columns(const Experiment& experiment, const JsonReader& options) {
-  const Options asked = read_options(experiment, options);
-  std::vector<Column> columns{
-      {.name = "view", .unit = "", .description = "what is looked at", .is_key = true},
-      {.name = "transfer", .unit = "", .description = "its transfer function", .is_key = true},
-      {.name = "variant",
-       .unit = "",
-       .description = "how it is rendered; certified: the image that the others approximate",
-       .is_key = true},
-      {.name = "against",
-       .unit = "",
-       .description = "the image it is compared with: the certified one, or that of a variant; null: an image itself",
-       .is_key = true},
-      {.name = "frame",
-       .unit = "",
-       .description = "linear: light over black, clamped to [0, 1]; srgb8: the stored values of 8-bit sRGB frames of "
-                      "both images, over 255",
-       .is_key = true},
-      {.name = "scheme", .unit = "", .description = "of the variant"},
-      {.name = "step", .unit = "voxel", .description = "of its samples; null: at cells' borders and midpoints"},
-      {.name = "shading", .unit = "", .description = "of the variant: how it has normals, or light, between samples"},
-      {.name = "table_size", .unit = "", .description = "entries along each axis of its table"},
-      {.name = "table_format", .unit = "", .description = "of the table's numbers"},
-      {.name = "danskin_hanrahan",
-       .unit = "%",
-       .description = "100 sum |I - I_r| / sum I_r over pixels and channels (Danskin and Hanrahan 1992)",
-       .radius = "danskin_hanrahan_radius"},
-      {.name = "danskin_hanrahan_radius", .unit = "%", .description = "from the certified image's radii"},
-      {.name = "rmse", .unit = "of white", .description = "root mean square of I - I_r", .radius = "radius"},
-      {.name = "psnr", .unit = "dB", .description = "-20 log10 of it: the peak is 1; null for equal images"},
-      {.name = "maximum", .unit = "of white", .description = "largest |I - I_r| of a channel", .radius = "radius"},
-      {.name = "column", .unit = "pixel", .description = "where it is, from the left"},
-      {.name = "row", .unit = "pixel", .description = "where it is, from the top"},
-      {.name = "bias", .unit = "of white", .description = "mean of I - I_r", .radius = "radius"},
-      {.name = "radius",
-       .unit = "of white",
-       .description =
-           "of the certified image, largest; of a lit one measured, not proven; null for 8-bit frames, whose "
-           "certified one is rounded from the middle of the enclosure"},
-      {.name = "order",
-       .unit = "",
-       .description = "log2 of the RMSE, against the same, of the variant with twice the step or half the table, over "
-                      "this one's"},
-      {.name = "not_converged", .unit = "", .description = "pixels whose radius is wider than was asked for"},
-      {.name = "mean_opacity", .unit = "", .description = "of the certified image's pixels"},
-      {.name = "slabs",
-       .unit = "",
-       .description = "of all rays, where blocks are skipped: from each true or virtual sample to the next, by four in "
-                      "a step"},
-      {.name = "slabs_skipped", .unit = "%", .description = "those in skipped blocks only: the samples saved"},
-      {.name = "slabs_wrongly_skipped", .unit = "", .description = "skipped ones that show something"},
-      {.name = "blocks", .unit = "", .description = "of the volume"},
-      {.name = "blocks_skipped", .unit = "", .description = "of these"},
-      {.name = "blocks_wrongly_skipped", .unit = "", .description = "skipped ones in which such a slab has its middle"},
+template <class Get>
+CellOf<Comparison> of_error(Get get) {
+  return [get](const Comparison& found) { return std::invoke(get, found.error); };
+}
+
+/// The cell of the relative error, which a comparison lacks where the light of its reference is too uncertain.
+template <class Get>
+CellOf<Comparison> of_relative(Get get) {
+  return [get](const Comparison& found) -> std::optional<Value> {
+    return found.relative ? std::optional(value_of(std::invoke(get, *found.relative))) : std::nullopt;
   };
-  append(columns, picture_columns());
-  if (asked.window) {
-    columns.push_back({.name = "banding",
-                       .unit = "",
-                       .description = fmt::format(
-                           "how periodic the signed error is, mean of the channels: the largest rise of its "
-                           "autocorrelation over 2, in windows of {0} x {0} pixels; 1: stripes, some {1:.2f}: noise",
-                           *asked.window, 3.0 / static_cast<double>(*asked.window))});
-    columns.push_back({.name = "banding_amplitude",
-                       .unit = "of white",
-                       .description = "the root of banding times the error's mean square about the windows' means"});
-  }
-  for (const std::string& name : asked.baselines) {
-    columns.push_back({.name = gain_over(name),
-                       .unit = "dB",
-                       .description = fmt::format("psnr minus that of {}, against the same", name)});
-    columns.push_back({.name = closer_than(name),
-                       .unit = "%",
-                       .description = fmt::format("of the pixels in which it and {} differ by more than half a step of "
-                                                  "8 bits, those in which it is closer to the reference",
-                                                  name)});
-    if (asked.window)
+}
+
+std::optional<Value> shading_of(const Comparison& found) {
+  const auto& shading = found.variant->drawing.shading;
+  if (!shading) return std::nullopt;
+  return value_of(shading->method != nullptr ? shading->method->name : "pointwise");
+}
+
+Columns<SceneTable> table_columns() {
+  return {
+      {.name = "table_size", .description = "entries along each axis of its table", .cell = &SceneTable::size},
+      {.name = "table_format",
+       .description = "of the table's numbers",
+       .cell = [](const SceneTable& table) { return table.format.name; }},
+  };
+}
+
+/// Of a comparison, up to what depends on other variants.
+Columns<Comparison> comparison_columns() {
+  Columns<Comparison> columns{
+      {.name = "scheme",
+       .description = "of the variant",
+       .cell = [](const Comparison& found) { return found.variant->drawing.scheme; }},
+      {.name = "step",
+       .unit = "voxel",
+       .description = "of its samples; null: at cells' borders and midpoints",
+       .cell = [](const Comparison& found) { return found.variant->drawing.step; }},
+      {.name = "shading",
+       .description = "of the variant: how it has normals, or light, between samples",
+       .cell = shading_of},
+  };
+  append_part(
+      columns, [](const Comparison& found) -> const auto& { return found.variant->drawing.table; }, table_columns());
+  append(columns,
+         Columns<Comparison>{
+             {.name = "danskin_hanrahan",
+              .unit = "%",
+              .description = "100 sum |I - I_r| / sum I_r over pixels and channels (Danskin and Hanrahan 1992)",
+              .radius = "danskin_hanrahan_radius",
+              .cell = of_relative(&RelativeError::percent)},
+             {.name = "danskin_hanrahan_radius",
+              .unit = "%",
+              .description = "from the certified image's radii",
+              .cell = of_relative(&RelativeError::radius)},
+             {.name = "rmse",
+              .unit = "of white",
+              .description = "root mean square of I - I_r",
+              .radius = "radius",
+              .cell = of_error(&ImageError::rmse)},
+             {.name = "psnr",
+              .unit = "dB",
+              .description = "-20 log10 of it: the peak is 1; null for equal images",
+              .cell = of_error(&ImageError::psnr)},
+             {.name = "maximum",
+              .unit = "of white",
+              .description = "largest |I - I_r| of a channel",
+              .radius = "radius",
+              .cell = of_error(&ImageError::maximum)},
+             {.name = "column",
+              .unit = "pixel",
+              .description = "where it is, from the left",
+              .cell = of_error([](const ImageError& error) { return error.place[0]; })},
+             {.name = "row",
+              .unit = "pixel",
+              .description = "where it is, from the top",
+              .cell = of_error([](const ImageError& error) { return error.place[1]; })},
+             {.name = "bias",
+              .unit = "of white",
+              .description = "mean of I - I_r",
+              .radius = "radius",
+              .cell = of_error(&ImageError::bias)}});
+  return columns;
+}
+
+Columns<CertifiedImage> certified_columns() {
+  return {
+      {.name = "not_converged",
+       .description = "pixels whose radius is wider than was asked for",
+       .cell = &CertifiedImage::not_converged},
+      {.name = "mean_opacity", .description = "of the certified image's pixels", .cell = &CertifiedImage::mean_opacity},
+  };
+}
+
+Columns<SkippedSlabs> skipped_columns() {
+  return {
+      {.name = "slabs",
+       .description = "of all rays, where blocks are skipped: from each true or virtual sample to the next, by four in "
+                      "a step",
+       .cell = &SkippedSlabs::slabs},
+      {.name = "slabs_skipped",
+       .unit = "%",
+       .description = "those in skipped blocks only: the samples saved",
+       .cell =
+           [](const SkippedSlabs& count) {
+             return 100 * static_cast<double>(count.skipped) / static_cast<double>(count.slabs);
+           }},
+      {.name = "slabs_wrongly_skipped",
+       .description = "skipped ones that show something",
+       .cell = &SkippedSlabs::wrong},
+      {.name = "blocks", .description = "of the volume", .cell = &SkippedSlabs::blocks},
+      {.name = "blocks_skipped", .description = "of these", .cell = &SkippedSlabs::skipped_blocks},
+      {.name = "blocks_wrongly_skipped",
+       .description = "skipped ones in which such a slab has its middle",
+       .cell = &SkippedSlabs::wrong_blocks},
+  };
+}
+
+std::optional<Value> frame_of(const Record& record) {
+  if (record.picture) return std::nullopt;
+  if (!record.comparison) return Value();
+  return value_of(record.comparison->is_frame ? "srgb8" : "linear");
+}
+
+std::optional<Value> radius_of(const Record& record) {
+  if (record.truth) return record.truth->radius;
+  if (record.comparison && !record.comparison->is_frame) return record.comparison->radius;
+  return std::nullopt;
+}
+
+/// The cell of a number that only some records have.
+std::optional<Value> found(const std::optional<double>& number) { return cell_if(number.has_value(), number); }
+
+/// The cell of what a comparison has for a baseline.
+CellOf<Record> of_baseline(std::vector<std::optional<double>> Comparison::*numbers, std::size_t baseline) {
+  return [=](const Record& record) -> std::optional<Value> {
+    return record.comparison ? found((*record.comparison.*numbers)[baseline]) : std::nullopt;
+  };
+}
+
+/// The cell of what a comparison has of banding.
+template <class Get>
+CellOf<Record> of_banding(Get get) {
+  return [get](const Record& record) -> std::optional<Value> {
+    return record.comparison && record.comparison->banding ? found(get(*record.comparison->banding)) : std::nullopt;
+  };
+}
+
+/// The column of what a variant is better by than a baseline.
+std::string gain_over(const std::string& baseline) { return "gain_over_" + baseline; }
+std::string closer_than(const std::string& baseline) { return "closer_than_" + baseline; }
+std::string banding_gain_over(const std::string& baseline) { return "banding_gain_over_" + baseline; }
+
+/// What depends on the measure's options is described behind the other columns, but stands among them in the rows.
+void describe_baselines(Columns<Record>& columns, const Options& options) {
+  if (options.window)
+    append(columns, Columns<Record>{
+                        {.name = "banding",
+                         .description = fmt::format(
+                             "how periodic the signed error is, mean of the channels: the largest rise of its "
+                             "autocorrelation over 2, in windows of {0} x {0} pixels; 1: stripes, some {1:.2f}: noise",
+                             *options.window, 3.0 / static_cast<double>(*options.window))},
+                        {.name = "banding_amplitude",
+                         .unit = "of white",
+                         .description = "the root of banding times the error's mean square about the windows' means"}});
+  for (const std::string& name : options.baselines) {
+    append(columns, Columns<Record>{{.name = gain_over(name),
+                                     .unit = "dB",
+                                     .description = fmt::format("psnr minus that of {}, against the same", name)},
+                                    {.name = closer_than(name),
+                                     .unit = "%",
+                                     .description = fmt::format(
+                                         "of the pixels in which it and {} differ by more than half a step of "
+                                         "8 bits, those in which it is closer to the reference",
+                                         name)}});
+    if (options.window)
       columns.push_back({.name = banding_gain_over(name),
                          .unit = "dB",
                          .description = fmt::format("20 log10 of its banding amplitude over this one's: {}", name)});
   }
+}
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& options) {
+  Columns<Record> columns{
+      {.name = "view", .description = "what is looked at", .is_key = true, .cell = &Record::view},
+      {.name = "transfer", .description = "its transfer function", .is_key = true, .cell = &Record::transfer},
+      {.name = "variant",
+       .description = "how it is rendered; certified: the image that the others approximate",
+       .is_key = true,
+       .cell = &Record::variant},
+      {.name = "against",
+       .description = "the image it is compared with: the certified one, or that of a variant; null: an image itself",
+       .is_key = true,
+       .cell = &Record::against},
+      {.name = "frame",
+       .description = "linear: light over black, clamped to [0, 1]; srgb8: the stored values of 8-bit sRGB frames of "
+                      "both images, over 255",
+       .is_key = true,
+       .cell = frame_of},
+      written_here<Record>("line", [](const Record& record) { return cell_if(!record.picture, Value()); }),
+  };
+  append_part(columns, &Record::comparison, comparison_columns());
+  if (options.window) {
+    append(
+        columns,
+        {written_here<Record>("banding", of_banding([](const BandingFound& banding) { return banding.banding.share; })),
+         written_here<Record>("banding_amplitude",
+                              of_banding([](const BandingFound& banding) { return banding.banding.amplitude; }))});
+    for (std::size_t i = 0; i < options.baselines.size(); ++i)
+      columns.push_back(
+          written_here<Record>(banding_gain_over(options.baselines[i]),
+                               of_banding([i](const BandingFound& banding) { return banding.gains[i]; })));
+  }
+  append(
+      columns,
+      Columns<Record>{
+          {.name = "radius",
+           .unit = "of white",
+           .description =
+               "of the certified image, largest; of a lit one measured, not proven; null for 8-bit frames, whose "
+               "certified one is rounded from the middle of the enclosure",
+           .cell = radius_of},
+          {.name = "order",
+           .description = "log2 of the RMSE, against the same, of the variant with twice the step or half the table, "
+                          "over this one's",
+           .cell = [](const Record& record) -> std::optional<Value> {
+             return record.comparison ? found(record.comparison->order) : std::nullopt;
+           }}});
+  append_part(columns, &Record::truth, certified_columns());
+  for (std::size_t i = 0; i < options.baselines.size(); ++i)
+    columns.push_back(written_here<Record>(gain_over(options.baselines[i]), of_baseline(&Comparison::gains, i)));
+  for (std::size_t i = 0; i < options.baselines.size(); ++i)
+    columns.push_back(
+        written_here<Record>(closer_than(options.baselines[i]), of_baseline(&Comparison::closer_pixels, i)));
+  append_part(
+      columns, [](const Record& record) { return record.comparison ? record.comparison->skipped : std::nullopt; },
+      skipped_columns());
+  append_part(columns, &Record::picture, picture_columns());
+  describe_baselines(columns, options);
   return columns;
 }
 
-std::vector<Row> images_rows(const Experiment& experiment, const JsonReader& json, const Field& field) {
-  const Options options = read_options(experiment, json);
-  return rows_of_views(options.views, field, json,
-                       [&](const View& view) { return ViewRows(experiment, options, view, field.grid).rows; });
+std::vector<Record> records_of_field(const Experiment& experiment, const Options& options, const Field& field) {
+  return records_of_views(options.views, field,
+                          [&](const View& view) { return ViewStudy(experiment, options, view, field.grid).records; });
 }
+
+}  // namespace
+
+extern const Measure images;
+const Measure images{
+    MeasureDefinition{.name = "images",
+                      .summary = "views of volumes in many ways, against the certified image and each other",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_field = records_of_field}};
 
 }  // namespace raytruth

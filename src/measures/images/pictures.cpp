@@ -19,10 +19,13 @@ PngPixels png_of(const Image& image) {
 }
 
 /// `text_of(pixel)` of all pixels, line by line.
-std::vector<std::string> lines_of(const Image& image, const std::function<std::string(std::size_t)>& text_of) {
-  std::vector<std::string> lines(static_cast<std::size_t>(image.size[1]));
-  for (std::size_t i = 0; i < image.pixels.size(); ++i)
-    lines[i / static_cast<std::size_t>(image.size[0])] += text_of(i);
+std::vector<PictureLine> lines_of(const Image& image, const std::function<std::string(std::size_t)>& text_of) {
+  std::vector<PictureLine> lines;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    if (i % static_cast<std::size_t>(image.size[0]) == 0)
+      lines.push_back({static_cast<std::int64_t>(lines.size()), {}});
+    lines.back().pixels += text_of(i);
+  }
   return lines;
 }
 
@@ -44,7 +47,7 @@ Image light_of_frame(const Image& image) {
   return light;
 }
 
-std::vector<std::string> color_lines(const Image& image) {
+std::vector<PictureLine> color_lines(const Image& image) {
   const PngPixels stored = png_of(image);
   return lines_of(image, [&stored](std::size_t pixel) {
     const auto* const channels = stored.channels.data() + 4 * pixel;
@@ -52,7 +55,7 @@ std::vector<std::string> color_lines(const Image& image) {
   });
 }
 
-std::vector<std::string> error_lines(const Image& image, const Image& truth, double gain) {
+std::vector<PictureLine> error_lines(const Image& image, const Image& truth, double gain) {
   return lines_of(image, [&](std::size_t pixel) {
     const auto color = [pixel](const Image& of) { return of.pixels[pixel].head<3>().max(0).min(1).eval(); };
     const double error = (color(image) - color(truth)).abs().maxCoeff();
@@ -60,20 +63,16 @@ std::vector<std::string> error_lines(const Image& image, const Image& truth, dou
   });
 }
 
-void add_picture(std::vector<Row>& rows, const Row& keys, const std::vector<std::string>& lines) {
-  for (std::size_t line = 0; line < lines.size(); ++line) {
-    Row& row = rows.emplace_back(keys);
-    row.insert(row.end(), {{"line", static_cast<std::int64_t>(line)}, {"pixels", lines[line]}});
-  }
-}
-
-std::vector<Column> picture_columns() {
+Columns<PictureLine> picture_columns() {
   return {
-      {.name = "line", .unit = "", .description = "of a picture, 0 on top; null: of the whole image", .is_key = true},
+      {.name = "line",
+       .description = "of a picture, 0 on top; null: of the whole image",
+       .is_key = true,
+       .cell = &PictureLine::line},
       {.name = "pixels",
-       .unit = "",
        .description = "of the line, two hexadecimal digits each: of an image red, green and blue in 8-bit sRGB; of a "
-                      "comparison 255 times the gain times the largest error of a channel"},
+                      "comparison 255 times the gain times the largest error of a channel",
+       .cell = &PictureLine::pixels},
   };
 }
 

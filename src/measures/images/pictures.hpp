@@ -1,10 +1,10 @@
 #pragma once
 
-#include "experiments/row.hpp"
+#include "experiments/columns.hpp"
 #include "raytruth/images/image.hpp"
 
+#include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace raytruth {
@@ -15,16 +15,19 @@ Image stored_frame(const Image& image);
 /// The light that a viewer of that file sees.
 Image light_of_frame(const Image& image);
 
-/// Lines of an image in 8-bit sRGB, 0 on top: two hexadecimal digits for each of red, green and blue.
-std::vector<std::string> color_lines(const Image& image);
+/// A line of a picture that a result holds.
+struct PictureLine {
+  std::int64_t line;   ///< 0 on top
+  std::string pixels;  ///< in hexadecimal digits
+};
 
-/// Lines of an error: two hexadecimal digits of 255 times the gain times the largest one of a pixel's channels.
-std::vector<std::string> error_lines(const Image& image, const Image& truth, double gain);
+/// An image in 8-bit sRGB: two hexadecimal digits for each of red, green and blue.
+std::vector<PictureLine> color_lines(const Image& image);
 
-/// A row for every line of a picture: the keys, then `line` and `pixels`.
-void add_picture(std::vector<Row>& rows, const Row& keys, const std::vector<std::string>& lines);
+/// An error: two hexadecimal digits of 255 times the gain times the largest one of a pixel's channels.
+std::vector<PictureLine> error_lines(const Image& image, const Image& truth, double gain);
 
-/// The columns of such rows.
-std::vector<Column> picture_columns();
+/// `line` and `pixels`.
+Columns<PictureLine> picture_columns();
 
 }  // namespace raytruth

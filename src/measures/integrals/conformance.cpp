@@ -6,15 +6,26 @@
 
 #include <tbb/parallel_for.h>
 
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
 namespace raytruth {
 
 namespace {
 
 constexpr std::int64_t most_intervals = 1'000'000;
 
-std::int64_t read_intervals(const JsonReader& json) {
+struct Options {
+  std::int64_t intervals = 0;  ///< equal ones along a ray
+};
+
+Options read_options(const Experiment& experiment, const JsonReader& json) {
   json.only({"kind", "intervals"});
-  return json.at("intervals").integer(1, most_intervals);
+  const Options options{.intervals = json.at("intervals").integer(1, most_intervals)};
+  need_schemes(experiment);
+  return options;
 }
 
 /// What the scheme answers to a vector; nothing if it refuses the samples.
@@ -27,45 +38,67 @@ std::optional<Answer> answer_of(const IntegralScheme& scheme, const ConformanceV
   return Answer{outcome.color, outcome.opacity};
 }
 
-}  // namespace
+struct Record {
+  std::string scheme;
+  std::int64_t intervals = 0;
+  LevelScore score;
+};
 
-std::vector<Column> conformance_columns(const Experiment& experiment, const JsonReader& options) {
-  read_intervals(options);
-  need_schemes(experiment);
+Columns<LevelScore> score_columns() {
   return {
-      {.name = "scheme", .unit = "", .description = "whose answers are scored", .is_key = true},
-      {.name = "intervals", .unit = "", .description = "equal ones along a ray; a slab is one", .is_key = true},
-      {.name = "level", .unit = "", .description = "of the conformance vectors; all: of all of them", .is_key = true},
-      {.name = "cases", .unit = "", .description = "vectors of the level"},
-      {.name = "answered", .unit = "", .description = "of them; no answer has no digits"},
-      {.name = "digits_min", .unit = "decimal digit", .description = "right in the worst answer"},
-      {.name = "digits_median", .unit = "decimal digit", .description = "right in the median answer"},
-      {.name = "worst", .unit = "", .description = "id of the vector with the worst answer"},
+      {.name = "level",
+       .description = "of the conformance vectors; all: of all of them",
+       .is_key = true,
+       .cell = &LevelScore::level},
+      {.name = "cases", .description = "vectors of the level", .cell = &LevelScore::cases},
+      {.name = "answered", .description = "of them; no answer has no digits", .cell = &LevelScore::answered},
+      {.name = "digits_min",
+       .unit = "decimal digit",
+       .description = "right in the worst answer",
+       .cell = &LevelScore::digits_min},
+      {.name = "digits_median",
+       .unit = "decimal digit",
+       .description = "right in the median answer",
+       .cell = &LevelScore::digits_median},
+      {.name = "worst", .description = "id of the vector with the worst answer", .cell = &LevelScore::worst},
   };
 }
 
-std::vector<Row> conformance_rows(const Experiment& experiment, const JsonReader& options, const Field& /*field*/) {
-  const std::int64_t intervals = read_intervals(options);
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns{
+      {.name = "scheme", .description = "whose answers are scored", .is_key = true, .cell = &Record::scheme},
+      {.name = "intervals",
+       .description = "equal ones along a ray; a slab is one",
+       .is_key = true,
+       .cell = &Record::intervals},
+  };
+  append_part(columns, &Record::score, score_columns());
+  return columns;
+}
+
+std::vector<Record> records(const Experiment& experiment, const Options& options) {
   const auto vectors = conformance_vectors(experiment.seed);
   std::vector<ScoredVector> scored(vectors.size());
   tbb::parallel_for(std::size_t{0}, vectors.size(), [&](std::size_t i) {
     scored[i] = {vectors[i].id, std::string(vectors[i].level), truth_of(vectors[i]), std::nullopt};
   });
-  std::vector<Row> rows;
+  std::vector<Record> records;
   for (const IntegralScheme* const scheme : schemes_of(experiment)) {
     tbb::parallel_for(std::size_t{0}, vectors.size(),
-                      [&](std::size_t i) { scored[i].answer = answer_of(*scheme, vectors[i], intervals); });
-    for (const LevelScore& level : score(scored))
-      rows.push_back({{"scheme", scheme->name},
-                      {"intervals", intervals},
-                      {"level", level.level},
-                      {"cases", level.cases},
-                      {"answered", level.answered},
-                      {"digits_min", level.digits_min},
-                      {"digits_median", level.digits_median},
-                      {"worst", level.worst}});
+                      [&](std::size_t i) { scored[i].answer = answer_of(*scheme, vectors[i], options.intervals); });
+    for (const LevelScore& level : score(scored)) records.push_back({scheme->name, options.intervals, level});
   }
-  return rows;
+  return records;
 }
+
+}  // namespace
+
+extern const Measure conformance;
+const Measure conformance{
+    MeasureDefinition{.name = "conformance",
+                      .summary = "digits that a scheme's answers to the conformance vectors have right",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_experiment = records}};
 
 }  // namespace raytruth

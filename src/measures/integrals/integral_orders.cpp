@@ -5,10 +5,22 @@
 #include "raytruth/reference/certified.hpp"
 
 #include <array>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace raytruth {
 
 namespace {
+
+struct Options {};
+
+Options read_options(const Experiment& experiment, const JsonReader& json) {
+  json.only({"kind"});
+  need_schemes(experiment);
+  need_transfers(experiment);
+  return {};
+}
 
 /// Errors of one scheme by level, or why there are none.
 struct Convergence {
@@ -48,70 +60,101 @@ std::vector<Convergence> converge(const Experiment& experiment, const Field& fie
   return convergences;
 }
 
-std::array<LevelError, level_count> levels_of(const Convergence& convergence, double (*rms)(const RayErrors&)) {
+/// Root mean squares of the errors at one step.
+struct StepErrors {
+  double opacity_rms = 0;
+  double color_rms = 0;
+  double radius = 0;
+};
+
+/// The orders that all steps show.
+struct Orders {
+  ShownOrder opacity;
+  ShownOrder color;
+};
+
+struct Record {
+  TransferKeys transfer;
+  ConvergenceKeys keys;
+  std::optional<StepErrors> errors = {};
+  std::optional<Orders> orders = {};
+  std::optional<std::string> refusal = {};
+};
+
+ShownOrder order_of(const Convergence& convergence, double (*rms)(const RayErrors&)) {
   std::array<LevelError, level_count> levels;
   for (std::size_t level = 0; level < level_count; ++level)
     levels[level] = {rms(convergence.levels[level]), convergence.levels[level].radius};
-  return levels;
+  return shown_order(levels);
 }
 
-void add_rows(const Row& keys, const Convergence& convergence, std::vector<Row>& rows) {
+/// The errors at every step, and the orders; or why there are none.
+void add_records(const TransferKeys& transfer, ConvergenceKeys keys, const Convergence& convergence,
+                 std::vector<Record>& records) {
+  const auto add = [&]() -> Record& { return records.emplace_back(Record{.transfer = transfer, .keys = keys}); };
   if (!convergence.refusal.empty()) {
-    Row& row = rows.emplace_back(keys);
-    row.insert(row.end(), {{"part", "fit"}, {"status", "refused"}, {"why", std::string(convergence.refusal)}});
+    add().refusal = std::string(convergence.refusal);
     return;
   }
   for (std::size_t level = 0; level < level_count; ++level) {
     const RayErrors& errors = convergence.levels[level];
-    Row& row = rows.emplace_back(keys);
-    row.insert(row.end(), {{"part", "point"},
-                           {"step", step_of(level)},
-                           {"opacity_rms", rms_opacity(errors)},
-                           {"color_rms", rms_color(errors)},
-                           {"radius", errors.radius}});
+    keys.step = step_of(level);
+    add().errors = {.opacity_rms = rms_opacity(errors), .color_rms = rms_color(errors), .radius = errors.radius};
   }
-  Row& row = rows.emplace_back(keys);
-  row.emplace_back("part", "fit");
-  add_order(row, "opacity", levels_of(convergence, rms_opacity));
-  add_order(row, "color", levels_of(convergence, rms_color));
+  keys.step.reset();
+  add().orders = {.opacity = order_of(convergence, rms_opacity), .color = order_of(convergence, rms_color)};
+}
+
+Columns<StepErrors> step_error_columns() {
+  return {
+      {.name = "opacity_rms",
+       .description = "root mean square of the opacity's error over rays",
+       .radius = "radius",
+       .cell = &StepErrors::opacity_rms},
+      {.name = "color_rms",
+       .description = "root mean square of the color's error over rays and channels",
+       .radius = "radius",
+       .cell = &StepErrors::color_rms},
+      {.name = "radius",
+       .description = "bound on the error of the errors: the reference's",
+       .cell = &StepErrors::radius},
+  };
+}
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns;
+  append_part(columns, &Record::transfer, transfer_key_columns());
+  append_part(columns, &Record::keys, convergence_key_columns());
+  append_part(columns, &Record::errors, step_error_columns());
+  Columns<Orders> of_orders;
+  append_part(of_orders, &Orders::opacity, shown_order_columns("opacity", "opacity_rms"));
+  append_part(of_orders, &Orders::color, shown_order_columns("color", "color_rms"));
+  append_part(columns, &Record::orders, of_orders);
+  append_refusal(columns, &Record::refusal);
+  return columns;
+}
+
+std::vector<Record> records_of_field(const Experiment& experiment, const Options& /*options*/, const Field& field) {
+  std::vector<Record> records;
+  for (const NamedTransfer& transfer : experiment.transfers)
+    for (const auto& [regime, name] : regimes) {
+      const auto convergences = converge(experiment, field, transfer.transfer, regime);
+      for (std::size_t scheme = 0; scheme < convergences.size(); ++scheme)
+        add_records({transfer.name, experiment.emission},
+                    {.regime = std::string(name), .scheme = experiment.schemes[scheme], .step = {}},
+                    convergences[scheme], records);
+    }
+  return records;
 }
 
 }  // namespace
 
-std::vector<Column> integral_orders_columns(const Experiment& experiment, const JsonReader& options) {
-  options.only({"kind"});
-  need_schemes(experiment);
-  need_transfers(experiment);
-  std::vector<Column> columns = transfer_columns();
-  const std::vector<Column> keys = convergence_columns();
-  columns.insert(columns.end(), keys.begin(), keys.end());
-  for (const std::string name : {"opacity", "color"})
-    columns.push_back({.name = name + "_rms",
-                       .unit = "",
-                       .description = "root mean square of the " + name + "'s error over rays" +
-                                      (name == "color" ? " and channels" : ""),
-                       .is_key = false,
-                       .radius = "radius"});
-  columns.push_back({.name = "radius", .unit = "", .description = "bound on the error of the errors: the reference's"});
-  for (const std::string name : {"opacity", "color"}) {
-    const std::vector<Column> of_order = order_columns(name, name + "_rms");
-    columns.insert(columns.end(), of_order.begin(), of_order.end());
-  }
-  return columns;
-}
-
-std::vector<Row> integral_orders_rows(const Experiment& experiment, const JsonReader& /*options*/, const Field& field) {
-  std::vector<Row> rows;
-  for (const NamedTransfer& transfer : experiment.transfers)
-    for (const auto& [regime, name] : regimes) {
-      const auto convergences = converge(experiment, field, transfer.transfer, regime);
-      for (std::size_t scheme = 0; scheme < convergences.size(); ++scheme) {
-        Row keys = transfer_keys(experiment, transfer);
-        keys.insert(keys.end(), {{"regime", std::string(name)}, {"scheme", experiment.schemes[scheme]}});
-        add_rows(keys, convergences[scheme], rows);
-      }
-    }
-  return rows;
-}
+extern const Measure integral_orders;
+const Measure integral_orders{
+    MeasureDefinition{.name = "integral_orders",
+                      .summary = "fitted orders of colour and opacity, refined inside cells and at constant steps",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_field = records_of_field}};
 
 }  // namespace raytruth

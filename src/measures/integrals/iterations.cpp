@@ -8,6 +8,10 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace raytruth {
 
@@ -20,17 +24,18 @@ struct Options {
   std::vector<std::int64_t> counts;  ///< ascending
 };
 
-Options read_options(const JsonReader& json) {
+Options read_options(const Experiment& experiment, const JsonReader& json) {
   json.only({"kind", "signal", "counts"});
   Options options{json.at("signal").word({"order1", "order2"}), {}};
   for (const JsonReader& count : json.at("counts").items()) {
     const std::int64_t least = options.counts.empty() ? 1 : options.counts.back() + 1;
     options.counts.push_back(count.integer(least, most_iterations));
   }
+  need_transfers(experiment);
   return options;
 }
 
-IntegralScheme iterations(const std::string& signal, std::int64_t count, bool is_left) {
+IntegralScheme scheme_of(const std::string& signal, std::int64_t count, bool is_left) {
   IntegralScheme scheme;
   scheme.method = Iterations{static_cast<int>(count), is_left};
   scheme.signal = signal;
@@ -70,7 +75,7 @@ Trials measure_trials(const Experiment& experiment, const Field& field, const Pi
     auto& own = trials[ray.index].emplace();
     for (const std::int64_t count : options.counts) {
       const ErrorBudget budget =
-          ray.integrate.budget(iterations(options.signal, count, is_left), ray.signal, samples, ray.truth);
+          ray.integrate.budget(scheme_of(options.signal, count, is_left), ray.signal, samples, ray.truth);
       const Difference& error = budget.quadrature;
       const Outcome<>& outcome = budget.outcome;
       own.push_back({error, budget.radius,
@@ -100,62 +105,85 @@ bool is_settled(const std::vector<Trial>& ray, std::size_t from) {
                      [](const Trial& trial) { return trial.pixel_steps == 0; });
 }
 
-}  // namespace
+struct Record {
+  TransferKeys transfer;
+  Sampling sampling;
+  std::string signal;
+  std::string_view variant;
+  std::int64_t iterations = 0;
+  RayCounts rays;
+  ErrorSummary errors;
+  double unchanged_share = 0;
+  double within_one_share = 0;
+  double settled_share = 0;
+};
 
-std::vector<Column> iterations_columns(const Experiment& experiment, const JsonReader& options) {
-  read_options(options);
-  need_transfers(experiment);
-  std::vector<Column> columns = transfer_columns();
-  append(columns, sampling_columns());
-  columns.insert(
-      columns.end(),
-      {{.name = "signal", .unit = "", .description = "the scheme whose slabs are integrated", .is_key = true},
-       {.name = "variant",
-        .unit = "",
-        .description = "where an iteration looks the transfer function up: mid: (k + 1/2)/N, left: k/N",
-        .is_key = true},
-       {.name = "iterations", .unit = "", .description = "N, of each slab", .is_key = true}});
-  append(columns, count_columns());
-  append(columns, error_columns("1/255", "a ray minus the exact integral of the same slabs"));
-  columns.insert(
-      columns.end(),
-      {{.name = "unchanged_share",
-        .unit = "",
-        .description = "rays whose colour and opacity in 8 bits are those of the exact integral"},
-       {.name = "within_one_share", .unit = "", .description = "rays on which none of the four is off by more than 1"},
-       {.name = "settled_share",
-        .unit = "",
-        .description = "rays that are unchanged with this N and all larger ones of the study"}});
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns;
+  append_part(columns, &Record::transfer, transfer_key_columns());
+  append_part(columns, &Record::sampling, sampling_key_columns());
+  append(columns,
+         {{.name = "signal",
+           .description = "the scheme whose slabs are integrated",
+           .is_key = true,
+           .cell = &Record::signal},
+          {.name = "variant",
+           .description = "where an iteration looks the transfer function up: mid: (k + 1/2)/N, left: k/N",
+           .is_key = true,
+           .cell = &Record::variant},
+          {.name = "iterations", .description = "N, of each slab", .is_key = true, .cell = &Record::iterations}});
+  append_part(columns, &Record::rays, ray_count_columns());
+  append_part(columns, &Record::errors,
+              error_summary_columns("1/255", "a ray minus the exact integral of the same slabs"));
+  append(columns, {{.name = "unchanged_share",
+                    .description = "rays whose colour and opacity in 8 bits are those of the exact integral",
+                    .cell = &Record::unchanged_share},
+                   {.name = "within_one_share",
+                    .description = "rays on which none of the four is off by more than 1",
+                    .cell = &Record::within_one_share},
+                   {.name = "settled_share",
+                    .description = "rays that are unchanged with this N and all larger ones of the study",
+                    .cell = &Record::settled_share}});
   return columns;
 }
 
-std::vector<Row> iterations_rows(const Experiment& experiment, const JsonReader& options, const Field& field) {
-  const Options asked = read_options(options);
-  std::vector<Row> rows;
+std::vector<Record> records_of_field(const Experiment& experiment, const Options& options, const Field& field) {
+  std::vector<Record> records;
   for (const NamedTransfer& transfer : experiment.transfers)
     for (const Sampling& sampling : experiment.samplings)
       for (const auto& [variant, is_left] : {std::pair{"mid", false}, {"left", true}}) {
-        const Trials trials = measure_trials(experiment, field, transfer.transfer, sampling, asked, is_left);
-        for (std::size_t count = 0; count < asked.counts.size(); ++count) {
+        const Trials trials = measure_trials(experiment, field, transfer.transfer, sampling, options, is_left);
+        for (std::size_t count = 0; count < options.counts.size(); ++count) {
           RayErrors errors;
           for (const auto& ray : trials)
             if (ray) errors.add((*ray)[count].error, (*ray)[count].radius);
-          Row& row = rows.emplace_back(transfer_keys(experiment, transfer));
-          add_sampling(row, sampling);
-          row.insert(row.end(), {{"signal", asked.signal}, {"variant", variant}, {"iterations", asked.counts[count]}});
-          add_counts(row, experiment, errors.rays.size());
-          add_errors(row, errors, 255);
           const auto within = [count](int steps) {
             return [count, steps](const std::vector<Trial>& ray) { return ray[count].pixel_steps <= steps; };
           };
-          row.insert(row.end(), {{"unchanged_share", share(trials, within(0))},
-                                 {"within_one_share", share(trials, within(1))},
-                                 {"settled_share", share(trials, [count](const std::vector<Trial>& ray) {
-                                    return is_settled(ray, count);
-                                  })}});
+          const auto settled = [count](const std::vector<Trial>& ray) { return is_settled(ray, count); };
+          records.push_back({.transfer = {transfer.name, experiment.emission},
+                             .sampling = sampling,
+                             .signal = options.signal,
+                             .variant = variant,
+                             .iterations = options.counts[count],
+                             .rays = ray_counts(experiment, errors.rays.size()),
+                             .errors = summary_of(errors, 255),
+                             .unchanged_share = share(trials, within(0)),
+                             .within_one_share = share(trials, within(1)),
+                             .settled_share = share(trials, settled)});
         }
       }
-  return rows;
+  return records;
 }
+
+}  // namespace
+
+extern const Measure iterations;
+const Measure iterations{
+    MeasureDefinition{.name = "iterations",
+                      .summary = "errors of slabs that are summed up in N iterations, in steps of an 8-bit frame",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_field = records_of_field}};
 
 }  // namespace raytruth

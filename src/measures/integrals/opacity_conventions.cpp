@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace raytruth {
 
@@ -64,7 +66,7 @@ struct Options {
   std::vector<double> steps;
 };
 
-Options read_options(const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "shapes", "peaks", "steps"});
   std::vector<std::string_view> shapes;
   for (const auto& transfer : catalogue::transfers)
@@ -94,47 +96,64 @@ RayErrors differences(const Integrals& found, const Integrals& meant) {
   return errors;
 }
 
-Value mean_opacity(const Integrals& rays) {
+/// None where every ray is constant.
+std::optional<double> mean_opacity(const Integrals& rays) {
   double sum = 0;
   double count = 0;
   for (const auto& ray : rays) {
     sum += ray ? ray->opacity : 0;
     count += ray ? 1 : 0;
   }
-  return count > 0 ? Value(sum / count) : Value();
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
-}  // namespace
+/// A table whose numbers mean one thing and are taken for another.
+struct Record {
+  std::string shape;
+  double peak = 0;
+  Emission emission;
+  const Meaning* meant;
+  const Meaning* read_as;
+  double step = 0;
+  RayCounts rays;
+  std::optional<double> opacity_meant;
+  ErrorSummary errors;
+};
 
-std::vector<Column> opacity_conventions_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_options(options);
-  std::vector<Column> columns{
-      {.name = "shape", .unit = "", .description = "transfer function whose extinctions are the table", .is_key = true},
-      {.name = "peak", .unit = "", .description = "the table's largest number", .is_key = true},
-      {.name = "emission", .unit = "", .description = "of both integrals", .is_key = true},
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns{
+      {.name = "shape",
+       .description = "transfer function whose extinctions are the table",
+       .is_key = true,
+       .cell = &Record::shape},
+      {.name = "peak", .description = "the table's largest number", .is_key = true, .cell = &Record::peak},
+      {.name = "emission",
+       .description = "of both integrals",
+       .is_key = true,
+       .cell = [](const Record& record) { return emission_name(record.emission); }},
       {.name = "meant",
-       .unit = "",
        .description = "what the numbers x are: extinction: per voxel; opacity: of a voxel, 1 - (1 - x)^d in a step of "
                       "d voxels; product: min(1, x d) is the opacity of a step",
-       .is_key = true},
+       .is_key = true,
+       .cell = [](const Record& record) { return record.meant->name; }},
       {.name = "read_as",
-       .unit = "",
        .description = "what they are taken for; uncorrected: x is the opacity of a step, whatever its length",
-       .is_key = true},
-      {.name = "step", .unit = "voxel", .description = "d", .is_key = true},
+       .is_key = true,
+       .cell = [](const Record& record) { return record.read_as->name; }},
+      {.name = "step", .unit = "voxel", .description = "d", .is_key = true, .cell = &Record::step},
   };
-  append(columns, count_columns());
-  columns.push_back({.name = "opacity_meant", .unit = "", .description = "opacity of the rays as meant, mean"});
-  append(columns, error_columns("1/255", "a ray as read minus as meant"));
+  append_part(columns, &Record::rays, ray_count_columns());
+  columns.push_back(
+      {.name = "opacity_meant", .description = "opacity of the rays as meant, mean", .cell = &Record::opacity_meant});
+  append_part(columns, &Record::errors, error_summary_columns("1/255", "a ray as read minus as meant"));
   return columns;
 }
 
-std::vector<Row> opacity_conventions_rows(const Experiment& experiment, const JsonReader& options, const Field& field) {
-  const Options asked = read_options(options);
-  std::vector<Row> rows;
-  for (const std::string& shape : asked.shapes)
-    for (const double peak : asked.peaks)
-      for (const double step : asked.steps) {
+std::vector<Record> records_of_field(const Experiment& experiment, const Options& options, const Field& field) {
+  std::vector<Record> records;
+  for (const std::string& shape : options.shapes)
+    for (const double peak : options.peaks)
+      for (const double step : options.steps) {
         const auto& entry = *std::find_if(catalogue::transfers.begin(), catalogue::transfers.end(),
                                           [&shape](const auto& transfer) { return transfer.name == shape; });
         const PiecewiseLinear table = entry.make(peak, experiment.seed);
@@ -145,19 +164,28 @@ std::vector<Row> opacity_conventions_rows(const Experiment& experiment, const Js
           for (std::size_t read = 0; read < meanings.size(); ++read) {
             if (read == meant) continue;
             const RayErrors errors = differences(results[read], results[meant]);
-            Row& row = rows.emplace_back();
-            row.insert(row.end(), {{"shape", shape},
-                                   {"peak", peak},
-                                   {"emission", emission_name(experiment.emission)},
-                                   {"meant", meanings[meant].name},
-                                   {"read_as", meanings[read].name},
-                                   {"step", step}});
-            add_counts(row, experiment, errors.rays.size());
-            row.emplace_back("opacity_meant", mean_opacity(results[meant]));
-            add_errors(row, errors, 255);
+            records.push_back({.shape = shape,
+                               .peak = peak,
+                               .emission = experiment.emission,
+                               .meant = &meanings[meant],
+                               .read_as = &meanings[read],
+                               .step = step,
+                               .rays = ray_counts(experiment, errors.rays.size()),
+                               .opacity_meant = mean_opacity(results[meant]),
+                               .errors = summary_of(errors, 255)});
           }
       }
-  return rows;
+  return records;
 }
+
+}  // namespace
+
+extern const Measure opacity_conventions;
+const Measure opacity_conventions{
+    MeasureDefinition{.name = "opacity_conventions",
+                      .summary = "what it costs to take a table of one convention of opacity for another",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_field = records_of_field}};
 
 }  // namespace raytruth

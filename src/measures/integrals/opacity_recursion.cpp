@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace raytruth {
 
@@ -22,7 +24,7 @@ struct Options {
   std::vector<std::int64_t> parts;
 };
 
-Options read_options(const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "opacities", "parts"});
   Options options;
   for (const JsonReader& opacity : json.at("opacities").items())
@@ -58,9 +60,43 @@ Real50 widened(const Real50& x) { return x; }
 Real50 widened(double x) { return x; }
 Real50 widened(Binary32 x) { return to_double(x); }
 
-/// One row for each method and number of parts, in an arithmetic of that many binary digits.
 template <class Real>
-void add_rows(const Options& options, const std::string& arithmetic, int digits, std::vector<Row>& rows) {
+constexpr int binary_digits = std::numeric_limits<Real>::digits;
+template <>
+constexpr int binary_digits<Binary32> = std::numeric_limits<float>::digits;
+
+/// The opacity of one of n equal parts of a whole, by one method in one arithmetic.
+struct Record {
+  std::string_view arithmetic;
+  int digits = 0;  ///< of the arithmetic, binary
+  std::string_view method;
+  std::int64_t parts = 0;
+  double whole_opacity = 0;
+  Real50 found;
+  Real50 exact;
+};
+
+double opacity_error(const Record& record) { return static_cast<double>(record.found - record.exact); }
+
+double relative_error(const Record& record) {
+  return static_cast<double>((record.found - record.exact) / record.exact);
+}
+
+/// The magnitude of the error in units of the last place of the exact opacity, in the record's arithmetic.
+double last_places(const Record& record) {
+  const int exponent = std::ilogb(static_cast<double>(record.exact)) + 1 - record.digits;
+  return static_cast<double>(ldexp(abs(record.found - record.exact), -exponent));
+}
+
+/// What the parts compose to, minus the whole.
+double composed_error(const Record& record) {
+  return static_cast<double>(by_closed_form(record.found, 1 / static_cast<double>(record.parts)) -
+                             record.whole_opacity);
+}
+
+/// One for each method and number of parts.
+template <class Real>
+void add_records(const Options& options, std::string_view arithmetic, std::vector<Record>& records) {
   for (const double opacity : options.opacities)
     for (const std::int64_t parts : options.parts) {
       const auto count = static_cast<double>(parts);
@@ -68,57 +104,70 @@ void add_rows(const Options& options, const std::string& arithmetic, int digits,
       const std::array methods{std::pair{"recursion", by_recursion<Real>(opacity, parts)},
                                std::pair{"power", by_power<Real>(opacity, parts)},
                                std::pair{"closed_form", by_closed_form<Real>(opacity, count)}};
-      for (const auto& [method, result] : methods) {
-        const Real50 found = widened(result);
-        const auto relative = static_cast<double>((found - exact) / exact);
-        const int exponent = std::ilogb(static_cast<double>(exact)) + 1 - digits;
-        rows.push_back({{"arithmetic", arithmetic},
-                        {"method", method},
-                        {"parts", parts},
-                        {"whole_opacity", opacity},
-                        {"transparency", 1 - opacity},
-                        {"opacity", static_cast<double>(found)},
-                        {"opacity_error", static_cast<double>(found - exact)},
-                        {"relative_error", relative},
-                        {"relative_magnitude", std::abs(relative)},
-                        {"last_places", static_cast<double>(ldexp(abs(found - exact), -exponent))},
-                        {"composed_error", static_cast<double>(by_closed_form(found, 1 / count) - opacity)}});
-      }
+      for (const auto& [method, result] : methods)
+        records.push_back({.arithmetic = arithmetic,
+                           .digits = binary_digits<Real>,
+                           .method = method,
+                           .parts = parts,
+                           .whole_opacity = opacity,
+                           .found = widened(result),
+                           .exact = exact});
     }
+}
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  return {
+      {.name = "arithmetic",
+       .description = "binary64, binary32, or 50 decimal digits",
+       .is_key = true,
+       .cell = &Record::arithmetic},
+      {.name = "method",
+       .description = "recursion: Lee's eq. 11; power: eq. 9 as printed; closed_form: -expm1(log1p(-alpha)/n)",
+       .is_key = true,
+       .cell = &Record::method},
+      {.name = "parts", .description = "n, equal parts of the whole", .is_key = true, .cell = &Record::parts},
+      {.name = "whole_opacity",
+       .description = "alpha, rounded to binary32",
+       .is_key = true,
+       .cell = &Record::whole_opacity},
+      {.name = "transparency",
+       .description = "1 - alpha",
+       .cell = [](const Record& record) { return 1 - record.whole_opacity; }},
+      {.name = "opacity",
+       .description = "of one part",
+       .cell = [](const Record& record) { return static_cast<double>(record.found); }},
+      {.name = "opacity_error",
+       .description = "of one part, against 1 - (1 - alpha)^(1/n) in 50 digits",
+       .cell = opacity_error},
+      {.name = "relative_error", .description = "opacity_error over the exact opacity", .cell = relative_error},
+      {.name = "relative_magnitude",
+       .description = "magnitude of relative_error",
+       .cell = [](const Record& record) { return std::abs(relative_error(record)); }},
+      {.name = "last_places",
+       .description = "magnitude of opacity_error in units of the last place of the exact opacity in this arithmetic",
+       .cell = last_places},
+      {.name = "composed_error",
+       .description = "what the n parts compose to, exactly, minus alpha",
+       .cell = composed_error},
+  };
+}
+
+std::vector<Record> records(const Experiment& /*experiment*/, const Options& options) {
+  std::vector<Record> records;
+  add_records<Real50>(options, "decimal50", records);
+  add_records<double>(options, "binary64", records);
+  add_records<Binary32>(options, "binary32", records);
+  return records;
 }
 
 }  // namespace
 
-std::vector<Column> opacity_recursion_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_options(options);
-  return {
-      {.name = "arithmetic", .unit = "", .description = "binary64, binary32, or 50 decimal digits", .is_key = true},
-      {.name = "method",
-       .unit = "",
-       .description = "recursion: Lee's eq. 11; power: eq. 9 as printed; closed_form: -expm1(log1p(-alpha)/n)",
-       .is_key = true},
-      {.name = "parts", .unit = "", .description = "n, equal parts of the whole", .is_key = true},
-      {.name = "whole_opacity", .unit = "", .description = "alpha, rounded to binary32", .is_key = true},
-      {.name = "transparency", .unit = "", .description = "1 - alpha"},
-      {.name = "opacity", .unit = "", .description = "of one part"},
-      {.name = "opacity_error", .unit = "", .description = "of one part, against 1 - (1 - alpha)^(1/n) in 50 digits"},
-      {.name = "relative_error", .unit = "", .description = "opacity_error over the exact opacity"},
-      {.name = "relative_magnitude", .unit = "", .description = "magnitude of relative_error"},
-      {.name = "last_places",
-       .unit = "",
-       .description = "magnitude of opacity_error in units of the last place of the exact opacity in this arithmetic"},
-      {.name = "composed_error", .unit = "", .description = "what the n parts compose to, exactly, minus alpha"},
-  };
-}
-
-std::vector<Row> opacity_recursion_rows(const Experiment& /*experiment*/, const JsonReader& options,
-                                        const Field& /*field*/) {
-  const Options asked = read_options(options);
-  std::vector<Row> rows;
-  add_rows<Real50>(asked, "decimal50", std::numeric_limits<Real50>::digits, rows);
-  add_rows<double>(asked, "binary64", std::numeric_limits<double>::digits, rows);
-  add_rows<Binary32>(asked, "binary32", std::numeric_limits<float>::digits, rows);
-  return rows;
-}
+extern const Measure opacity_recursion;
+const Measure opacity_recursion{
+    MeasureDefinition{.name = "opacity_recursion",
+                      .summary = "the opacity of a part of a stretch by Lee's recursion against the closed form",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_experiment = records}};
 
 }  // namespace raytruth

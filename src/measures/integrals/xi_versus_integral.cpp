@@ -8,13 +8,25 @@
 #include "raytruth/statistics/statistics.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace raytruth {
 
 namespace {
+
+struct Options {};
+
+Options read_options(const Experiment& experiment, const JsonReader& json) {
+  json.only({"kind"});
+  need_signal_schemes(experiment);
+  need_usable_samplings(experiment, json);
+  need_transfers(experiment);
+  return {};
+}
 
 /// A scheme on a ray.
 struct Trial {
@@ -46,96 +58,122 @@ Trials measure_trials(const Experiment& experiment, const Field& field, const Pi
   return trials;
 }
 
-struct Quantity {
-  const char* name;
-  double Trial::*error;
+/// Two correlations of ranks; each none where it is not defined.
+struct Correlations {
+  std::optional<RankCorrelation> spearman;
+  std::optional<RankCorrelation> kendall;
 };
-
-constexpr std::array quantities{Quantity{"opacity", &Trial::opacity}, Quantity{"color", &Trial::color}};
-
-struct Correlation {
-  const char* name;
-  std::optional<RankCorrelation> (*of)(const std::vector<double>&, const std::vector<double>&);
-};
-
-constexpr std::array correlations{Correlation{"spearman", spearman}, Correlation{"kendall", kendall}};
-
-void add_correlation(Row& row, const std::string& name, const std::optional<RankCorrelation>& correlation) {
-  row.emplace_back(name, correlation ? Value(correlation->estimate) : Value());
-  row.emplace_back(name + "_low", correlation ? Value(correlation->low) : Value());
-  row.emplace_back(name + "_high", correlation ? Value(correlation->high) : Value());
-}
 
 /// Whether a ray with a larger xi has a larger error.
-void add_across_rays(Row& row, const Trials& trials, std::size_t scheme) {
-  for (const auto& [name, error] : quantities) {
+Correlations across_rays(const Trials& trials, std::size_t scheme, double Trial::*error) {
+  std::vector<double> xis;
+  std::vector<double> errors;
+  for (const auto& ray : trials) {
+    if (!ray) continue;
+    xis.push_back((*ray)[scheme].xi);
+    errors.push_back((*ray)[scheme].*error);
+  }
+  return {spearman(xis, errors), kendall(xis, errors)};
+}
+
+/// Whether, on one and the same ray, the scheme with a larger xi has a larger error: Kendall's correlation over the
+/// schemes, of all rays.
+ShownQuantiles across_schemes(const Trials& trials, double Trial::*error) {
+  std::vector<double> taus;
+  for (const auto& ray : trials) {
+    if (!ray) continue;
     std::vector<double> xis;
     std::vector<double> errors;
-    for (const auto& ray : trials) {
-      if (!ray) continue;
-      xis.push_back((*ray)[scheme].xi);
-      errors.push_back((*ray)[scheme].*error);
+    for (const Trial& trial : *ray) {
+      xis.push_back(trial.xi);
+      errors.push_back(trial.*error);
     }
-    for (const auto& [correlation, of] : correlations)
-      add_correlation(row, std::string(name) + "_" + correlation, of(xis, errors));
+    if (const auto tau = kendall(xis, errors)) taus.push_back(tau->estimate);
   }
+  std::sort(taus.begin(), taus.end());
+  return shown_quantiles(taus);
 }
 
-/// Whether, on one and the same ray, the scheme with a larger xi has a larger error.
-void add_across_schemes(Row& row, const Trials& trials) {
-  for (const auto& [name, error] : quantities) {
-    std::vector<double> taus;
-    for (const auto& ray : trials) {
-      if (!ray) continue;
-      std::vector<double> xis;
-      std::vector<double> errors;
-      for (const Trial& trial : *ray) {
-        xis.push_back(trial.xi);
-        errors.push_back(trial.*error);
-      }
-      if (const auto tau = kendall(xis, errors)) taus.push_back(tau->estimate);
-    }
-    std::sort(taus.begin(), taus.end());
-    add_quantiles(row, std::string(name) + "_schemes_kendall", taus);
-  }
+struct AcrossRays {
+  std::string scheme;
+  Correlations opacity;
+  Correlations color;
+};
+
+struct AcrossSchemes {
+  ShownQuantiles opacity;
+  ShownQuantiles color;
+};
+
+/// One of the two is there.
+struct Record {
+  TransferKeys transfer;
+  Sampling sampling;
+  RayCounts rays;
+  std::optional<AcrossRays> across_rays = {};
+  double radius = 0;
+  std::optional<AcrossSchemes> across_schemes = {};
+};
+
+/// NAME and the ends of its interval.
+Columns<std::optional<RankCorrelation>> correlation_columns(const std::string& name, const std::string& description) {
+  const auto column = [&](const std::string& suffix, double RankCorrelation::*figure, const std::string& which) {
+    return RecordColumn<std::optional<RankCorrelation>>{
+        .name = name + suffix,
+        .description = description + which,
+        .cell = [figure](const std::optional<RankCorrelation>& correlation) {
+          return correlation ? std::optional((*correlation).*figure) : std::nullopt;
+        }};
+  };
+  return {column("", &RankCorrelation::estimate, ""), column("_low", &RankCorrelation::low, ": 95 % interval, low end"),
+          column("_high", &RankCorrelation::high, ": 95 % interval, high end")};
 }
 
-}  // namespace
-
-std::vector<Column> xi_versus_integral_columns(const Experiment& experiment, const JsonReader& options) {
-  options.only({"kind"});
-  need_signal_schemes(experiment);
-  need_usable_samplings(experiment, options);
-  need_transfers(experiment);
-  std::vector<Column> columns = transfer_columns();
-  append(columns, sampling_columns());
-  columns.push_back(
-      {.name = "part",
-       .unit = "",
-       .description = "rays: one scheme, over rays; schemes: quantiles over rays of the rank correlation over schemes",
-       .is_key = true});
-  columns.push_back({.name = "scheme", .unit = "", .description = "the scheme, for part rays", .is_key = true});
-  append(columns, count_columns());
-  for (const auto& [name, error] : quantities)
-    for (const auto& [correlation, of] : correlations) {
-      const std::string symbol = std::string(name) + "_" + correlation;
-      const std::string what = std::string(correlation) + "'s rank correlation of xi and the magnitude of the " + name +
-                               "'s error, over rays";
-      columns.push_back({.name = symbol, .unit = "", .description = what});
-      columns.push_back({.name = symbol + "_low", .unit = "", .description = what + ": 95 % interval, low end"});
-      columns.push_back({.name = symbol + "_high", .unit = "", .description = what + ": 95 % interval, high end"});
-    }
-  columns.push_back({.name = "radius", .unit = "", .description = "bound on the error of any of the errors"});
-  for (const auto& [name, error] : quantities)
-    append(columns, quantile_columns(std::string(name) + "_schemes_kendall", "",
-                                     std::string("Kendall's rank correlation of xi and the magnitude of the ") + name +
-                                         "'s error over the schemes, on one ray"));
+/// Of the correlations of xi and the errors of colour or opacity, `quantity`.
+Columns<Correlations> correlations_columns(const std::string& quantity) {
+  Columns<Correlations> columns;
+  for (const auto& [name, correlation] :
+       {std::pair{"spearman", &Correlations::spearman}, {"kendall", &Correlations::kendall}})
+    append_part(columns, correlation,
+                correlation_columns(quantity + "_" + name, std::string(name) +
+                                                               "'s rank correlation of xi and the magnitude of the " +
+                                                               quantity + "'s error, over rays"));
   return columns;
 }
 
-std::vector<Row> xi_versus_integral_rows(const Experiment& experiment, const JsonReader& /*options*/,
-                                         const Field& field) {
-  std::vector<Row> rows;
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns;
+  append_part(columns, &Record::transfer, transfer_key_columns());
+  append_part(columns, &Record::sampling, sampling_key_columns());
+  columns.push_back(
+      {.name = "part",
+       .description = "rays: one scheme, over rays; schemes: quantiles over rays of the rank correlation over schemes",
+       .is_key = true,
+       .cell = [](const Record& record) { return record.across_rays ? "rays" : "schemes"; }});
+  append_part(
+      columns, &Record::across_rays,
+      Columns<AcrossRays>{
+          {.name = "scheme", .description = "the scheme, for part rays", .is_key = true, .cell = &AcrossRays::scheme}});
+  append_part(columns, &Record::rays, ray_count_columns());
+  Columns<AcrossRays> of_rays;
+  append_part(of_rays, &AcrossRays::opacity, correlations_columns("opacity"));
+  append_part(of_rays, &AcrossRays::color, correlations_columns("color"));
+  append_part(columns, &Record::across_rays, of_rays);
+  columns.push_back(
+      {.name = "radius", .description = "bound on the error of any of the errors", .cell = &Record::radius});
+  Columns<AcrossSchemes> of_schemes;
+  for (const auto& [name, quantiles] :
+       {std::pair{"opacity", &AcrossSchemes::opacity}, {"color", &AcrossSchemes::color}})
+    append_part(of_schemes, quantiles,
+                shown_quantile_columns(std::string(name) + "_schemes_kendall", "",
+                                       std::string("Kendall's rank correlation of xi and the magnitude of the ") +
+                                           name + "'s error over the schemes, on one ray"));
+  append_part(columns, &Record::across_schemes, of_schemes);
+  return columns;
+}
+
+std::vector<Record> records_of_field(const Experiment& experiment, const Options& /*options*/, const Field& field) {
+  std::vector<Record> records;
   for (const NamedTransfer& transfer : experiment.transfers)
     for (const Sampling& sampling : experiment.samplings) {
       const Trials trials = measure_trials(experiment, field, transfer.transfer, sampling);
@@ -146,22 +184,28 @@ std::vector<Row> xi_versus_integral_rows(const Experiment& experiment, const Jso
         ++studied;
         for (const Trial& trial : *ray) radius = std::max(radius, trial.radius);
       }
-      Row keys = transfer_keys(experiment, transfer);
-      add_sampling(keys, sampling);
-      for (std::size_t scheme = 0; scheme < experiment.schemes.size(); ++scheme) {
-        Row& row = rows.emplace_back(keys);
-        row.insert(row.end(), {{"part", "rays"}, {"scheme", experiment.schemes[scheme]}});
-        add_counts(row, experiment, studied);
-        add_across_rays(row, trials, scheme);
-        row.emplace_back("radius", radius);
-      }
-      Row& row = rows.emplace_back(keys);
-      row.emplace_back("part", "schemes");
-      add_counts(row, experiment, studied);
-      row.emplace_back("radius", radius);
-      add_across_schemes(row, trials);
+      const Record known{.transfer = {transfer.name, experiment.emission},
+                         .sampling = sampling,
+                         .rays = ray_counts(experiment, studied),
+                         .radius = radius};
+      for (std::size_t scheme = 0; scheme < experiment.schemes.size(); ++scheme)
+        records.emplace_back(known).across_rays = {.scheme = experiment.schemes[scheme],
+                                                   .opacity = across_rays(trials, scheme, &Trial::opacity),
+                                                   .color = across_rays(trials, scheme, &Trial::color)};
+      records.emplace_back(known).across_schemes = {.opacity = across_schemes(trials, &Trial::opacity),
+                                                    .color = across_schemes(trials, &Trial::color)};
     }
-  return rows;
+  return records;
 }
+
+}  // namespace
+
+extern const Measure xi_versus_integral;
+const Measure xi_versus_integral{
+    MeasureDefinition{.name = "xi_versus_integral",
+                      .summary = "rank correlation of xi and the errors of colour and opacity",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_field = records_of_field}};
 
 }  // namespace raytruth

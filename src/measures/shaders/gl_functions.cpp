@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+#include <vector>
 
 namespace raytruth {
 
@@ -26,9 +28,13 @@ const std::array arithmetics{
     Arithmetic{"shader", "GLSL - 50 digits", &TwinErrors::shader},
 };
 
-std::int64_t read_inputs(const JsonReader& options) {
-  options.only({"kind", "inputs"});
-  return options.at("inputs").integer(1, most_inputs);
+struct Options {
+  std::size_t inputs = 0;
+};
+
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
+  json.only({"kind", "inputs"});
+  return {.inputs = static_cast<std::size_t>(json.at("inputs").integer(1, most_inputs))};
 }
 
 std::string argument_names(const Twin& twin) {
@@ -37,65 +43,91 @@ std::string argument_names(const Twin& twin) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-}  // namespace
+/// A local function on inputs of a kind.
+struct Record {
+  const Twin* twin;
+  TwinInputs inputs;
+  TwinErrors errors;
+};
 
-std::vector<Column> gl_functions_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_inputs(options);
-  std::vector<Column> columns{
-      {.name = "function", .unit = "", .description = "the local function of src/rules", .is_key = true},
-      {.name = "arguments", .unit = "", .description = "their domains; src/rules/README.md tells the ranges"},
+Columns<ArithmeticError> arithmetic_columns(const Arithmetic& arithmetic) {
+  const std::string of = std::string(" of ") + arithmetic.description;
+  return {
+      {.name = arithmetic.name + "_max_ulps",
+       .unit = "ulp",
+       .description = "maximum" + of,
+       .cell = &ArithmeticError::max_ulps},
+      {.name = arithmetic.name + "_rms_ulps",
+       .unit = "ulp",
+       .description = "root mean square" + of,
+       .cell = &ArithmeticError::rms_ulps},
+      {.name = arithmetic.name + "_max", .description = "maximum" + of, .cell = &ArithmeticError::max_absolute},
+      {.name = arithmetic.name + "_rms",
+       .description = "root mean square" + of,
+       .cell = &ArithmeticError::rms_absolute},
+  };
+}
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns{
+      {.name = "function",
+       .description = "the local function of src/rules",
+       .is_key = true,
+       .cell = [](const Record& record) { return record.twin->name; }},
+      {.name = "arguments",
+       .description = "their domains; src/rules/README.md tells the ranges",
+       .cell = [](const Record& record) { return argument_names(*record.twin); }},
       {.name = "inputs",
-       .unit = "",
        .description =
            "random: in the range of each argument; adversarial: zeros, denormals, huge and nearly equal ones",
-       .is_key = true},
-      {.name = "input_count", .unit = "", .description = "inputs drawn"},
-      {.name = "beyond_range", .unit = "", .description = "of these, left out: their values are beyond binary32"},
-      {.name = "not_finite", .unit = "", .description = "values of the shader that are not finite, but binary32 is"},
-      {.name = "gl_bound", .unit = "ulp", .description = "the catalogue's bound on gl_max_ulps"},
-      {.name = "rounding_bound", .unit = "ulp", .description = "its bound on round32_max_ulps and round64_max_ulps"},
+       .is_key = true,
+       .cell = [](const Record& record) { return record.inputs == TwinInputs::random ? "random" : "adversarial"; }},
+      {.name = "input_count",
+       .description = "inputs drawn",
+       .cell = [](const Record& record) { return record.errors.inputs; }},
+      {.name = "beyond_range",
+       .description = "of these, left out: their values are beyond binary32",
+       .cell = [](const Record& record) { return record.errors.beyond_range; }},
+      {.name = "not_finite",
+       .description = "values of the shader that are not finite, but binary32 is",
+       .cell = [](const Record& record) { return record.errors.not_finite; }},
+      {.name = "gl_bound",
+       .unit = "ulp",
+       .description = "the catalogue's bound on gl_max_ulps",
+       .cell = [](const Record& record) { return record.twin->bounds.gl; }},
+      {.name = "rounding_bound",
+       .unit = "ulp",
+       .description = "its bound on round32_max_ulps and round64_max_ulps",
+       .cell = [](const Record& record) { return record.twin->bounds.rounding; }},
       {.name = "violations",
-       .unit = "",
-       .description = "how many of the three, and of not_finite, are beyond their bounds"},
+       .description = "how many of the three, and of not_finite, are beyond their bounds",
+       .cell = [](const Record& record) { return violations(record.errors, record.twin->bounds); }},
   };
-  for (const auto& [name, description, error] : arithmetics) {
-    const std::string of = std::string(" of ") + description;
-    append(columns, {{.name = name + "_max_ulps", .unit = "ulp", .description = "maximum" + of},
-                     {.name = name + "_rms_ulps", .unit = "ulp", .description = "root mean square" + of},
-                     {.name = name + "_max", .unit = "", .description = "maximum" + of},
-                     {.name = name + "_rms", .unit = "", .description = "root mean square" + of}});
-  }
+  for (const Arithmetic& arithmetic : arithmetics)
+    append_part(
+        columns, [error = arithmetic.error](const Record& record) { return record.errors.*error; },
+        arithmetic_columns(arithmetic));
   return columns;
 }
 
-std::vector<Row> gl_functions_rows(const Experiment& experiment, const JsonReader& options, const Field& /*field*/) {
-  const auto count = static_cast<std::size_t>(read_inputs(options));
+std::vector<Record> records(const Experiment& experiment, const Options& options) {
   const auto device = open_gl(experiment.gl);
-  std::vector<Row> rows;
-  for (const auto& [inputs, name] :
-       {std::pair{TwinInputs::random, "random"}, std::pair{TwinInputs::adversarial, "adversarial"}})
-    for (const Twin& twin : catalogue::twins()) {
-      const TwinErrors errors = measure_twin(*device, twin, inputs, experiment.seed, count);
-      const Twin::Bounds& bounds = twin.bounds;
-      Row& row = rows.emplace_back();
-      row.insert(row.end(), {{"function", std::string(twin.name)},
-                             {"arguments", argument_names(twin)},
-                             {"inputs", name},
-                             {"input_count", static_cast<std::int64_t>(errors.inputs)},
-                             {"beyond_range", static_cast<std::int64_t>(errors.beyond_range)},
-                             {"not_finite", static_cast<std::int64_t>(errors.not_finite)},
-                             {"gl_bound", bounds.gl},
-                             {"rounding_bound", bounds.rounding},
-                             {"violations", violations(errors, bounds)}});
-      for (const Arithmetic& arithmetic : arithmetics) {
-        const ArithmeticError& error = errors.*arithmetic.error;
-        row.insert(row.end(), {{arithmetic.name + "_max_ulps", error.max_ulps},
-                               {arithmetic.name + "_rms_ulps", error.rms_ulps},
-                               {arithmetic.name + "_max", error.max_absolute},
-                               {arithmetic.name + "_rms", error.rms_absolute}});
-      }
-    }
-  return rows;
+  std::vector<Record> records;
+  for (const TwinInputs inputs : {TwinInputs::random, TwinInputs::adversarial})
+    for (const Twin& twin : catalogue::twins())
+      records.push_back({&twin, inputs, measure_twin(*device, twin, inputs, experiment.seed, options.inputs)});
+  return records;
 }
+
+}  // namespace
+
+extern const Measure gl_functions;
+const Measure gl_functions{
+    MeasureDefinition{.name = "gl_functions",
+                      .summary = "local functions in GLSL, binary32, binary64 and 50 digits, each against the next",
+                      .uses_gl = true,
+                      .read = read_options,
+                      .columns = columns,
+                      .of_experiment = records}};
 
 }  // namespace raytruth

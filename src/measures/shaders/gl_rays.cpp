@@ -9,6 +9,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string_view>
+#include <vector>
 
 namespace raytruth {
 
@@ -111,53 +113,90 @@ void need_steps_of_virtual_samples(const Experiment& experiment) {
       experiment.json.at("samplings").items()[i].refuse_value("a constant step for virtual samples");
 }
 
-}  // namespace
+struct Options {};
 
-std::vector<Column> gl_rays_columns(const Experiment& experiment, const JsonReader& options) {
-  options.only({"kind"});
+Options read_options(const Experiment& experiment, const JsonReader& json) {
+  json.only({"kind"});
   need_sampled_schemes(experiment);
   need_steps_of_virtual_samples(experiment);
   need_transfers(experiment);
-  std::vector<Column> columns = transfer_columns();
-  append(columns, sampling_columns());
-  append(columns,
-         {{.name = "scheme", .unit = "", .description = "the scheme", .is_key = true},
-          {.name = "term",
-           .unit = "",
-           .description = "method: the scheme in 50 digits - the truth; round64: in binary64 - in 50 digits; "
-                          "round32: in binary32 - in binary64; gl: in GLSL - in binary32; total: in GLSL - the "
-                          "truth, their sum",
-           .is_key = true}});
-  append(columns, count_columns());
-  append(columns, error_columns("", "this term"));
+  return {};
+}
+
+/// The errors that one step from the truth to the shader adds.
+struct Record {
+  TransferKeys transfer;
+  Sampling sampling;
+  std::string_view scheme;
+  std::string_view term;
+  RayCounts rays;
+  ErrorSummary errors;
+};
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns;
+  append_part(columns, &Record::transfer, transfer_key_columns());
+  append_part(columns, &Record::sampling, sampling_key_columns());
+  columns.push_back({.name = "scheme", .description = "the scheme", .is_key = true, .cell = &Record::scheme});
+  columns.push_back({.name = "term",
+                     .description =
+                         "method: the scheme in 50 digits - the truth; round64: in binary64 - in 50 digits; "
+                         "round32: in binary32 - in binary64; gl: in GLSL - in binary32; total: in GLSL - the "
+                         "truth, their sum",
+                     .is_key = true,
+                     .cell = &Record::term});
+  append_part(columns, &Record::rays, ray_count_columns());
+  append_part(columns, &Record::errors, error_summary_columns("", "this term"));
   return columns;
 }
 
-std::vector<Row> gl_rays_rows(const Experiment& experiment, const JsonReader& /*options*/, const Field& field) {
+/// The budget of a scheme over the rays of a field, and how many rays it is of.
+struct RayBudget {
+  Budget budget;
+  std::size_t rays = 0;
+};
+
+RayBudget budget_of(const Experiment& experiment, const Field& field, const PiecewiseLinear& transfer,
+                    const Sampling& sampling, const Sampled& method, GlDevice& device) {
+  const auto marched = march_rays(experiment, field, transfer, sampling, method);
+  std::vector<SampledRay<Binary32>> inputs;
+  for (const auto& ray : marched)
+    if (ray) inputs.push_back(ray->ray);
+  const auto shown = run_march(device, method, transfer, experiment.emission, inputs);
+  RayBudget result;
+  for (const auto& ray : marched)
+    if (ray) add(result.budget, *ray, shown[result.rays++]);
+  return result;
+}
+
+std::vector<Record> records_of_field(const Experiment& experiment, const Options& /*options*/, const Field& field) {
   const auto device = open_gl(experiment.gl);
-  std::vector<Row> rows;
+  std::vector<Record> records;
   for (const NamedTransfer& transfer : experiment.transfers)
     for (const Sampling& sampling : experiment.samplings)
       for (const IntegralScheme* scheme : schemes_of(experiment)) {
-        const Sampled& method = method_of(*scheme);
-        const auto marched = march_rays(experiment, field, transfer.transfer, sampling, method);
-        std::vector<SampledRay<Binary32>> inputs;
-        for (const auto& ray : marched)
-          if (ray) inputs.push_back(ray->ray);
-        const auto shown = run_march(*device, method, transfer.transfer, experiment.emission, inputs);
-        Budget budget;
-        std::size_t next = 0;
-        for (const auto& ray : marched)
-          if (ray) add(budget, *ray, shown[next++]);
-        for (const auto& [name, errors] : terms) {
-          Row& row = rows.emplace_back(transfer_keys(experiment, transfer));
-          add_sampling(row, sampling);
-          row.insert(row.end(), {{"scheme", scheme->name}, {"term", name}});
-          add_counts(row, experiment, next);
-          add_errors(row, budget.*errors);
-        }
+        const auto [budget, rays] =
+            budget_of(experiment, field, transfer.transfer, sampling, method_of(*scheme), *device);
+        for (const auto& [name, errors] : terms)
+          records.push_back({.transfer = {transfer.name, experiment.emission},
+                             .sampling = sampling,
+                             .scheme = scheme->name,
+                             .term = name,
+                             .rays = ray_counts(experiment, rays),
+                             .errors = summary_of(budget.*errors)});
       }
-  return rows;
+  return records;
 }
+
+}  // namespace
+
+extern const Measure gl_rays;
+const Measure gl_rays{
+    MeasureDefinition{.name = "gl_rays",
+                      .summary = "errors of rays in a shader: of the method, and of each arithmetic down to GLSL",
+                      .uses_gl = true,
+                      .read = read_options,
+                      .columns = columns,
+                      .of_field = records_of_field}};
 
 }  // namespace raytruth

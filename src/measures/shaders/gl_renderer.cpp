@@ -1,5 +1,6 @@
 #include "experiments/measure.hpp"
 #include "measures/images/grid_view.hpp"
+#include "measures/tables/table_study.hpp"
 #include "raytruth/catalogue.hpp"
 #include "raytruth/core/named.hpp"
 #include "raytruth/gl/hand_written_renderer.hpp"
@@ -13,6 +14,9 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <string>
+#include <vector>
 
 namespace raytruth {
 
@@ -31,18 +35,15 @@ struct Options {
   std::vector<GridView> views;
 };
 
-Options read_options(const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "shapes", "extinction", "entries", "step", "weight_bits", "size", "views"});
-  std::vector<std::string_view> shapes;
-  for (const auto& transfer : catalogue::transfers)
-    if (transfer.make != nullptr) shapes.push_back(transfer.name);
   Options options{.shapes = {},
                   .extinction = json.at("extinction").number(0, largest_extinction),
                   .entries = json.at("entries").integer(2, most_entries),
                   .step = json.at("step").number(0x1p-10, 1024),
                   .weight_bits = static_cast<int>(json.at("weight_bits").integer(1, most_weight_bits)),
                   .views = {}};
-  for (const JsonReader& shape : json.at("shapes").items()) options.shapes.push_back(shape.word(shapes));
+  for (const JsonReader& shape : json.at("shapes").items()) options.shapes.push_back(read_shape(shape));
   const auto size = read_image_size(json.at("size"));
   for (const JsonReader& view : json.at("views").items()) options.views.push_back(read_grid_view(view, size));
   return options;
@@ -146,6 +147,19 @@ constexpr std::array comparisons{
     Comparison{"rounded_weights", &Images::rounded_weights, "certified", &Images::certified},
 };
 
+/// A comparison of two images of a scene.
+struct Record {
+  std::string shape;
+  std::string camera;
+  double step;
+  int weight_bits;
+  double mean_opacity;  ///< of the certified image
+  double brightest;     ///< of its channels
+  const Comparison* compared;
+  ImageError error;
+  double radius;  ///< of the certified image, if it is the reference
+};
+
 double brightest_channel(const Image& image) {
   double largest = 0;
   for (const auto& pixel : image.pixels) largest = std::max(largest, pixel.head<3>().maxCoeff());
@@ -158,81 +172,109 @@ double mean_opacity(const Image& image) {
   return sum / static_cast<double>(image.pixels.size());
 }
 
-}  // namespace
+template <class Get>
+CellOf<Record> of_error(Get get) {
+  return [get](const Record& record) { return std::invoke(get, record.error); };
+}
 
-std::vector<Column> gl_renderer_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_options(options);
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
   return {
-      {.name = "shape", .unit = "", .description = "of the transfer function", .is_key = true},
-      {.name = "camera", .unit = "", .description = "orthographic or perspective", .is_key = true},
-      {.name = "step", .unit = "voxel", .description = "distance of samples", .is_key = true},
+      {.name = "shape", .description = "of the transfer function", .is_key = true, .cell = &Record::shape},
+      {.name = "camera", .description = "orthographic or perspective", .is_key = true, .cell = &Record::camera},
+      {.name = "step", .unit = "voxel", .description = "distance of samples", .is_key = true, .cell = &Record::step},
       {.name = "image",
-       .unit = "",
        .description = "binary64: the midpoint rule on exact samples; binary32: in binary32 from the samples on; "
                       "textures: samples too, by a texture unit of exact weights; rounded_weights: weights of "
                       "weight_bits; glsl: the hand-written renderer",
-       .is_key = true},
-      {.name = "reference", .unit = "", .description = "the image it is compared with", .is_key = true},
-      {.name = "comparison", .unit = "", .description = "image minus reference, in words"},
-      {.name = "weight_bits", .unit = "bit", .description = "of rounded_weights"},
-      {.name = "mean_opacity", .unit = "", .description = "of the certified image"},
-      {.name = "brightest", .unit = "", .description = "largest channel of the certified image"},
-      {.name = "error_max", .unit = "of white", .description = "largest difference of a channel", .radius = "radius"},
-      {.name = "column", .unit = "pixel", .description = "where it is, from the left"},
-      {.name = "row", .unit = "pixel", .description = "where it is, from the top"},
+       .is_key = true,
+       .cell = [](const Record& record) { return record.compared->image_name; }},
+      {.name = "reference",
+       .description = "the image it is compared with",
+       .is_key = true,
+       .cell = [](const Record& record) { return record.compared->reference_name; }},
+      {.name = "comparison",
+       .description = "image minus reference, in words",
+       .cell =
+           [](const Record& record) {
+             return std::string(record.compared->image_name) + " - " + record.compared->reference_name;
+           }},
+      {.name = "weight_bits", .unit = "bit", .description = "of rounded_weights", .cell = &Record::weight_bits},
+      {.name = "mean_opacity", .description = "of the certified image", .cell = &Record::mean_opacity},
+      {.name = "brightest", .description = "largest channel of the certified image", .cell = &Record::brightest},
+      {.name = "error_max",
+       .unit = "of white",
+       .description = "largest difference of a channel",
+       .radius = "radius",
+       .cell = of_error(&ImageError::maximum)},
+      {.name = "column",
+       .unit = "pixel",
+       .description = "where it is, from the left",
+       .cell = of_error([](const ImageError& error) { return error.place[0]; })},
+      {.name = "row",
+       .unit = "pixel",
+       .description = "where it is, from the top",
+       .cell = of_error([](const ImageError& error) { return error.place[1]; })},
       {.name = "error_mean",
        .unit = "of white",
        .description = "mean difference over pixels and channels, signed",
-       .radius = "radius"},
+       .radius = "radius",
+       .cell = of_error(&ImageError::bias)},
       {.name = "error_rms",
        .unit = "of white",
        .description = "root mean square over pixels and channels",
-       .radius = "radius"},
-      {.name = "psnr", .unit = "dB", .description = "-20 log10 of error_rms: the peak is 1; null for equal images"},
+       .radius = "radius",
+       .cell = of_error(&ImageError::rmse)},
+      {.name = "psnr",
+       .unit = "dB",
+       .description = "-20 log10 of error_rms: the peak is 1; null for equal images",
+       .cell = of_error(&ImageError::psnr)},
       {.name = "error_relative",
-       .unit = "",
-       .description = "sum of magnitudes over the reference's sum (Danskin and Hanrahan 1992)"},
-      {.name = "radius", .unit = "of white", .description = "of the certified image, largest; 0 if it has no part"},
+       .description = "sum of magnitudes over the reference's sum (Danskin and Hanrahan 1992)",
+       .cell = of_error(&ImageError::relative)},
+      {.name = "radius",
+       .unit = "of white",
+       .description = "of the certified image, largest; 0 if it has no part",
+       .cell = &Record::radius},
   };
 }
 
-std::vector<Row> gl_renderer_rows(const Experiment& experiment, const JsonReader& options, const Field& field) {
-  const Options asked = read_options(options);
+std::vector<Record> records_of_field(const Experiment& experiment, const Options& options, const Field& field) {
   const auto device = open_gl(experiment.gl);
-  std::vector<Row> rows;
-  for (const std::string& shape : asked.shapes) {
-    const auto& entry = *std::find_if(catalogue::transfers.begin(), catalogue::transfers.end(),
-                                      [&shape](const auto& transfer) { return transfer.name == shape; });
-    TexturedScene scene = textured_scene(field.grid, entry.make(asked.extinction, experiment.seed), asked.entries);
-    scene.step = asked.step;
+  std::vector<Record> records;
+  for (const std::string& shape : options.shapes) {
+    TexturedScene scene =
+        textured_scene(field.grid, TableStudy::transfer(shape, options.extinction, experiment.seed), options.entries);
+    scene.step = options.step;
     const Grid grid = drawn_grid(field.grid, scene);
-    for (const GridView& view : asked.views) {
+    for (const GridView& view : options.views) {
       scene.camera = aimed(view, grid);
-      const Images images = draw(scene, grid, asked.weight_bits, *device);
-      for (const auto& [image_name, image, reference_name, reference] : comparisons) {
-        const ImageError error = image_error(images.*image, images.*reference);
-        const bool is_against_truth = reference == &Images::certified;
-        rows.push_back({{"shape", shape},
-                        {"camera", view.kind},
-                        {"step", asked.step},
-                        {"image", image_name},
-                        {"reference", reference_name},
-                        {"comparison", std::string(image_name) + " - " + reference_name},
-                        {"weight_bits", std::int64_t{asked.weight_bits}},
-                        {"mean_opacity", mean_opacity(images.certified)},
-                        {"brightest", brightest_channel(images.certified)},
-                        {"error_max", error.maximum},
-                        {"column", error.place[0]},
-                        {"row", error.place[1]},
-                        {"error_mean", error.bias},
-                        {"error_rms", error.rmse},
-                        {"psnr", error.psnr ? Value(*error.psnr) : Value()},
-                        {"error_relative", error.relative ? Value(*error.relative) : Value()},
-                        {"radius", is_against_truth ? images.radius : 0.0}});
+      const Images images = draw(scene, grid, options.weight_bits, *device);
+      for (const Comparison& compared : comparisons) {
+        const bool is_against_truth = compared.reference == &Images::certified;
+        records.push_back({.shape = shape,
+                           .camera = view.kind,
+                           .step = options.step,
+                           .weight_bits = options.weight_bits,
+                           .mean_opacity = mean_opacity(images.certified),
+                           .brightest = brightest_channel(images.certified),
+                           .compared = &compared,
+                           .error = image_error(images.*compared.image, images.*compared.reference),
+                           .radius = is_against_truth ? images.radius : 0.0});
       }
     }
   }
-  return rows;
+  return records;
 }
+
+}  // namespace
+
+extern const Measure gl_renderer;
+const Measure gl_renderer{
+    MeasureDefinition{.name = "gl_renderer",
+                      .summary = "images of a hand-written renderer in GLSL, of the CPU, and certified ones",
+                      .uses_gl = true,
+                      .read = read_options,
+                      .columns = columns,
+                      .of_field = records_of_field}};
 
 }  // namespace raytruth

@@ -1,5 +1,5 @@
 #include "experiments/measure.hpp"
-#include "raytruth/catalogue.hpp"
+#include "measures/tables/table_study.hpp"
 #include "raytruth/core/random.hpp"
 #include "raytruth/gl/texture_look_ups.hpp"
 #include "raytruth/reference/ray_integral.hpp"
@@ -12,6 +12,9 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace raytruth {
 
@@ -112,77 +115,120 @@ Deviation deviation(const std::vector<double>& values, const std::vector<double>
   return result;
 }
 
-/// Rows of one texture: by the CPU and by a shader, in all formats, by all weights.
+/// Look-ups of a texture in a format, by weights of so many bits.
+struct Record {
+  std::string texture;
+  std::optional<std::string> shape;  ///< of the transfer function in it, if any
+  TexelFormat format;
+  std::string unit;
+  int weight_bits;  ///< 0: exact
+  std::size_t look_ups;
+  Deviation error;                      ///< from exact filtering
+  std::optional<double> bound;          ///< none where the weights are not known
+  std::optional<Deviation> difference;  ///< from the CPU; none of itself
+};
+
+/// Adds the look-ups of one texture: by the CPU and by a shader, in all formats, by all weights.
 template <std::size_t FormatCount>
-void add_rows(std::vector<Row>& rows, const Row& keys, const LookUps& what,
-              const std::array<TexelFormat, FormatCount>& formats, const std::vector<int>& weight_bits,
-              GlDevice& device) {
+void add_records(std::vector<Record>& records, const std::string& name, const std::optional<std::string>& shape,
+                 const LookUps& what, const std::array<TexelFormat, FormatCount>& formats,
+                 const std::vector<int>& weight_bits, GlDevice& device) {
   const std::vector<double> exact = look_up<double>(what, what.texture, 0);
   for (const TexelFormat format : formats) {
     const Texture stored = what.texture.stored(format);
     for (const int bits : weight_bits) {
-      const double bound = error_bound(stored, format, bits);
       const std::vector<double> by_cpu = look_up<Binary32>(what, stored, bits);
-      const auto add = [&](const char* unit, bool has_these_weights, const std::vector<double>& values) {
-        const bool is_cpu = &values == &by_cpu;
-        const Deviation error = deviation(values, exact);
-        const Deviation difference = deviation(values, by_cpu);
-        Row& row = rows.emplace_back(keys);
-        row.insert(row.end(), {{"format", std::string(facts(format).name)},
-                               {"unit", unit},
-                               {"weight_bits", bits > 0 ? Value(std::int64_t{bits}) : Value()},
-                               {"look_ups", static_cast<std::int64_t>(what.count())},
-                               {"error_max", error.largest},
-                               {"error_rms", error.rms},
-                               {"error_mean", error.mean},
-                               {"bound", has_these_weights ? Value(bound) : Value()},
-                               {"share_of_bound", has_these_weights ? Value(error.largest / bound) : Value()},
-                               {"difference_max", is_cpu ? Value() : Value(difference.largest)},
-                               {"difference_rms", is_cpu ? Value() : Value(difference.rms)}});
+      const auto add = [&](const char* unit, std::optional<double> bound, const std::vector<double>& values) {
+        records.push_back({.texture = name,
+                           .shape = shape,
+                           .format = format,
+                           .unit = unit,
+                           .weight_bits = bits,
+                           .look_ups = what.count(),
+                           .error = deviation(values, exact),
+                           .bound = bound,
+                           .difference = &values == &by_cpu ? std::nullopt : std::optional(deviation(values, by_cpu))});
       };
-      add("cpu", true, by_cpu);
-      add("glsl_emulation", true, look_up(device, what, format, {.is_emulated = true, .weight_bits = bits}));
-      if (bits == 0) add("glsl_sampler", false, look_up(device, what, format, {}));
+      const double bound = error_bound(stored, format, bits);
+      add("cpu", bound, by_cpu);
+      add("glsl_emulation", bound, look_up(device, what, format, {.is_emulated = true, .weight_bits = bits}));
+      if (bits == 0) add("glsl_sampler", {}, look_up(device, what, format, {}));
     }
   }
 }
 
-std::vector<Column> look_up_columns() {
+std::optional<double> share_of_bound(const Record& record) {
+  if (!record.bound) return std::nullopt;
+  return record.error.largest / *record.bound;
+}
+
+/// The cell of the difference from the CPU.
+CellOf<Record> of_difference(double Deviation::*number) {
+  return [number](const Record& record) {
+    return record.difference ? std::optional(*record.difference.*number) : std::nullopt;
+  };
+}
+
+Columns<Record> look_up_columns() {
   return {
       {.name = "texture",
-       .unit = "",
        .description = "transfer_1d: colour and extinction, over its largest, by the scalar; table_2d: colour and "
                       "opacity of a slab of length 1 by its front and back scalar; volume_3d: a field",
-       .is_key = true},
-      {.name = "shape", .unit = "", .description = "of the transfer function in the texture", .is_key = true},
-      {.name = "format", .unit = "", .description = "OpenGL's name of the texels' format", .is_key = true},
+       .is_key = true,
+       .cell = &Record::texture},
+      {.name = "shape",
+       .description = "of the transfer function in the texture",
+       .is_key = true,
+       .cell = [](const Record& record) { return cell_if(record.shape.has_value(), record.shape); }},
+      {.name = "format",
+       .description = "OpenGL's name of the texels' format",
+       .is_key = true,
+       .cell = [](const Record& record) { return facts(record.format).name; }},
       {.name = "unit",
-       .unit = "",
        .description = "cpu: TextureUnit in binary32; glsl_emulation: the same in a shader; glsl_sampler: the device's "
                       "own filter, whose weights it does not tell",
-       .is_key = true},
+       .is_key = true,
+       .cell = &Record::unit},
       {.name = "weight_bits",
        .unit = "bit",
        .description = "k, weights being multiples of 2^-k; null: as exact as a float, or unknown",
-       .is_key = true},
-      {.name = "look_ups", .unit = "", .description = "number of places"},
+       .is_key = true,
+       .cell =
+           [](const Record& record) {
+             return record.weight_bits > 0 ? std::optional(record.weight_bits) : std::nullopt;
+           }},
+      {.name = "look_ups", .description = "number of places", .cell = &Record::look_ups},
       {.name = "error_max",
        .unit = "of 1, the largest texel",
        .description = "largest error over places and channels, against exact filtering of binary32 texels at the same "
-                      "coordinates, which are binary32 too"},
-      {.name = "error_rms", .unit = "of 1, the largest texel", .description = "root mean square of the error"},
-      {.name = "error_mean", .unit = "of 1, the largest texel", .description = "mean error, signed"},
+                      "coordinates, which are binary32 too",
+       .cell = [](const Record& record) { return record.error.largest; }},
+      {.name = "error_rms",
+       .unit = "of 1, the largest texel",
+       .description = "root mean square of the error",
+       .cell = [](const Record& record) { return record.error.rms; }},
+      {.name = "error_mean",
+       .unit = "of 1, the largest texel",
+       .description = "mean error, signed",
+       .cell = [](const Record& record) { return record.error.mean; }},
       {.name = "bound",
        .unit = "of 1, the largest texel",
        .description = "what no error may exceed: half a step of the format, and on every axis half a level of the "
-                      "weights times the largest difference of neighbours, and rounding"},
-      {.name = "share_of_bound", .unit = "", .description = "error_max over bound"},
+                      "weights times the largest difference of neighbours, and rounding",
+       .cell = &Record::bound},
+      {.name = "share_of_bound", .description = "error_max over bound", .cell = share_of_bound},
       {.name = "difference_max",
        .unit = "of 1, the largest texel",
-       .description = "largest difference from the CPU in binary32, same format and bits"},
-      {.name = "difference_rms", .unit = "of 1, the largest texel", .description = "root mean square of it"},
+       .description = "largest difference from the CPU in binary32, same format and bits",
+       .cell = of_difference(&Deviation::largest)},
+      {.name = "difference_rms",
+       .unit = "of 1, the largest texel",
+       .description = "root mean square of it",
+       .cell = of_difference(&Deviation::rms)},
   };
 }
+
+// --- Transfer functions and tables ---
 
 struct TableOptions {
   std::vector<std::string> shapes;
@@ -193,18 +239,15 @@ struct TableOptions {
   std::vector<int> weight_bits;
 };
 
-TableOptions read_table_options(const JsonReader& json) {
+TableOptions read_table_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "shapes", "optical_depth", "transfer_entries", "table_entries", "look_ups", "weight_bits"});
-  std::vector<std::string_view> shapes;
-  for (const auto& transfer : catalogue::transfers)
-    if (transfer.make != nullptr) shapes.push_back(transfer.name);
   TableOptions options{.shapes = {},
                        .optical_depth = json.at("optical_depth").number(0, largest_depth),
                        .transfer_entries = json.at("transfer_entries").integer(2, most_entries),
                        .table_entries = json.at("table_entries").integer(2, most_entries),
                        .look_ups = json.at("look_ups").integer(1, most_look_ups),
                        .weight_bits = read_weight_bits(json)};
-  for (const JsonReader& shape : json.at("shapes").items()) options.shapes.push_back(shape.word(shapes));
+  for (const JsonReader& shape : json.at("shapes").items()) options.shapes.push_back(read_shape(shape));
   return options;
 }
 
@@ -257,46 +300,42 @@ Texture slab_texture(const PiecewiseLinear& transfer, std::int64_t entries) {
   return texture;
 }
 
-std::vector<int> read_volume_options(const JsonReader& json) {
-  json.only({"kind", "weight_bits"});
-  return read_weight_bits(json);
-}
-
-}  // namespace
-
-std::vector<Column> table_texture_precision_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_table_options(options);
+Columns<Record> table_columns(const Experiment& /*experiment*/, const TableOptions& /*options*/) {
   return look_up_columns();
 }
 
-std::vector<Row> table_texture_precision_rows(const Experiment& experiment, const JsonReader& options,
-                                              const Field& /*field*/) {
-  const TableOptions asked = read_table_options(options);
+std::vector<Record> table_records(const Experiment& experiment, const TableOptions& options) {
   const auto device = open_gl(experiment.gl);
-  std::vector<Row> rows;
-  for (const std::string& shape : asked.shapes) {
-    const auto& entry = *std::find_if(catalogue::transfers.begin(), catalogue::transfers.end(),
-                                      [&shape](const auto& transfer) { return transfer.name == shape; });
-    const PiecewiseLinear transfer = entry.make(asked.optical_depth, experiment.seed);
+  std::vector<Record> records;
+  for (const std::string& shape : options.shapes) {
+    const PiecewiseLinear transfer = TableStudy::transfer(shape, options.optical_depth, experiment.seed);
     const auto add = [&](const char* name, Texture texture) {
       LookUps what{.texture = std::move(texture), .coordinates = {}};
-      what.coordinates = random_coordinates(what.texture, asked.look_ups, experiment.seed);
-      add_rows(rows, {{"texture", name}, {"shape", shape}}, what, color_formats, asked.weight_bits, *device);
+      what.coordinates = random_coordinates(what.texture, options.look_ups, experiment.seed);
+      add_records(records, name, shape, what, color_formats, options.weight_bits, *device);
     };
-    add("transfer_1d", transfer_texture(transfer, asked.optical_depth, asked.transfer_entries));
-    add("table_2d", slab_texture(transfer, asked.table_entries));
+    add("transfer_1d", transfer_texture(transfer, options.optical_depth, options.transfer_entries));
+    add("table_2d", slab_texture(transfer, options.table_entries));
   }
-  return rows;
+  return records;
 }
 
-std::vector<Column> volume_texture_precision_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_volume_options(options);
+// --- Volumes ---
+
+struct VolumeOptions {
+  std::vector<int> weight_bits;
+};
+
+VolumeOptions read_volume_options(const Experiment& /*experiment*/, const JsonReader& json) {
+  json.only({"kind", "weight_bits"});
+  return {.weight_bits = read_weight_bits(json)};
+}
+
+Columns<Record> volume_columns(const Experiment& /*experiment*/, const VolumeOptions& /*options*/) {
   return look_up_columns();
 }
 
-std::vector<Row> volume_texture_precision_rows(const Experiment& experiment, const JsonReader& options,
-                                               const Field& field) {
-  const std::vector<int> weight_bits = read_volume_options(options);
+std::vector<Record> volume_records(const Experiment& experiment, const VolumeOptions& options, const Field& field) {
   const auto device = open_gl(experiment.gl);
   LookUps what{.texture = {.size = field.grid.size, .dimensions = 3, .channels = 1}, .coordinates = {}};
   for (const double value : field.grid.values) what.texture.texels.push_back(static_cast<float>(value));
@@ -310,9 +349,29 @@ std::vector<Row> volume_texture_precision_rows(const Experiment& experiment, con
         what.coordinates.push_back(static_cast<float>((origin[axis] + static_cast<double>(t) * direction[axis] + 0.5) /
                                                       static_cast<double>(field.grid.size[axis])));
   }
-  std::vector<Row> rows;
-  add_rows(rows, {{"texture", "volume_3d"}}, what, scalar_formats, weight_bits, *device);
-  return rows;
+  std::vector<Record> records;
+  add_records(records, "volume_3d", {}, what, scalar_formats, options.weight_bits, *device);
+  return records;
 }
+
+}  // namespace
+
+extern const Measure table_texture_precision;
+const Measure table_texture_precision{
+    MeasureDefinition{.name = "table_texture_precision",
+                      .summary = "look-ups of transfer functions and tables, by weights and formats of texels",
+                      .uses_gl = true,
+                      .read = read_table_options,
+                      .columns = table_columns,
+                      .of_experiment = table_records}};
+
+extern const Measure volume_texture_precision;
+const Measure volume_texture_precision{
+    MeasureDefinition{.name = "volume_texture_precision",
+                      .summary = "look-ups of volumes, by weights and formats of texels",
+                      .uses_gl = true,
+                      .read = read_volume_options,
+                      .columns = volume_columns,
+                      .of_field = volume_records}};
 
 }  // namespace raytruth

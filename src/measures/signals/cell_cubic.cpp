@@ -11,18 +11,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace raytruth {
 
 namespace {
+
+struct Options {};
+
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
+  json.only({"kind"});
+  return {};
+}
 
 /// What one ray shows.
 struct RayFindings {
   std::int64_t cells = 0;
   double value_error = 0;
   double cubic_term = 0;
-  std::vector<double> value_jumps;
+  double value_jump = 0;  ///< the largest
   std::vector<double> slope_jumps;
 };
 
@@ -47,35 +53,46 @@ RayFindings examine(const Grid& grid, const Ray& ray, std::uint64_t seed, std::u
     findings.cubic_term = std::max(findings.cubic_term, std::abs((b[3] - b[0]) - 3 * (b[2] - b[1])));
     if (i == 0) continue;
     const auto& before = signal.pieces[i - 1];
-    findings.value_jumps.push_back(std::abs(b[0] - before.polynomial.coefficients[3]));
+    findings.value_jump = std::max(findings.value_jump, std::abs(b[0] - before.polynomial.coefficients[3]));
     findings.slope_jumps.push_back(std::abs(piece.polynomial.derivative().coefficients.front() / piece.length -
                                             before.polynomial.derivative().coefficients.back() / before.length));
   }
   return findings;
 }
 
-}  // namespace
+struct Record {
+  std::int64_t rays = 0;
+  std::int64_t cells = 0;
+  double value_error = 0;
+  double cubic_term = 0;
+  double value_jump = 0;
+  ShownQuantiles slope_jumps = {};
+};
 
-std::vector<Column> cell_cubic_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  options.only({"kind"});
-  std::vector<Column> columns{
-      {.name = "rays", .unit = "", .description = "rays drawn"},
-      {.name = "cells", .unit = "", .description = "pieces of all rays, one for each cell crossed"},
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns{
+      {.name = "rays", .description = "rays drawn", .cell = &Record::rays},
+      {.name = "cells", .description = "pieces of all rays, one for each cell crossed", .cell = &Record::cells},
       {.name = "value_error_max",
        .unit = "scalar",
        .description = "largest deviation of the cubic from the eight voxels' value in 50 digits, at a random point of "
-                      "every cell; the field has range 1"},
+                      "every cell; the field has range 1",
+       .cell = &Record::value_error},
       {.name = "cubic_term_max",
        .unit = "scalar",
-       .description = "largest coefficient of u^3, u = 0 ... 1 in the cell"},
-      {.name = "value_jump_max", .unit = "scalar", .description = "largest jump of the value between two cells"},
+       .description = "largest coefficient of u^3, u = 0 ... 1 in the cell",
+       .cell = &Record::cubic_term},
+      {.name = "value_jump_max",
+       .unit = "scalar",
+       .description = "largest jump of the value between two cells",
+       .cell = &Record::value_jump},
   };
-  const auto jumps = quantile_columns("slope_jump", "scalar/voxel", "jump of the slope between two cells");
-  columns.insert(columns.end(), jumps.begin(), jumps.end());
+  append_part(columns, &Record::slope_jumps,
+              shown_quantile_columns("slope_jump", "scalar/voxel", "jump of the slope between two cells"));
   return columns;
 }
 
-std::vector<Row> cell_cubic_rows(const Experiment& experiment, const JsonReader& /*options*/, const Field& field) {
+std::vector<Record> records_of_field(const Experiment& experiment, const Options& /*options*/, const Field& field) {
   std::vector<RayFindings> rays(static_cast<std::size_t>(experiment.rays.count));
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size()), [&](const auto& range) {
     for (std::size_t ray = range.begin(); ray < range.end(); ++ray)
@@ -83,24 +100,28 @@ std::vector<Row> cell_cubic_rows(const Experiment& experiment, const JsonReader&
                           experiment.seed, ray);
   });
 
-  RayFindings all;
+  Record record{.rays = experiment.rays.count};
+  std::vector<double> slope_jumps;
   for (const RayFindings& ray : rays) {
-    all.cells += ray.cells;
-    all.value_error = std::max(all.value_error, ray.value_error);
-    all.cubic_term = std::max(all.cubic_term, ray.cubic_term);
-    all.value_jumps.insert(all.value_jumps.end(), ray.value_jumps.begin(), ray.value_jumps.end());
-    all.slope_jumps.insert(all.slope_jumps.end(), ray.slope_jumps.begin(), ray.slope_jumps.end());
+    record.cells += ray.cells;
+    record.value_error = std::max(record.value_error, ray.value_error);
+    record.cubic_term = std::max(record.cubic_term, ray.cubic_term);
+    record.value_jump = std::max(record.value_jump, ray.value_jump);
+    slope_jumps.insert(slope_jumps.end(), ray.slope_jumps.begin(), ray.slope_jumps.end());
   }
-  std::sort(all.slope_jumps.begin(), all.slope_jumps.end());
-
-  Row row{{"rays", experiment.rays.count},
-          {"cells", all.cells},
-          {"value_error_max", all.value_error},
-          {"cubic_term_max", all.cubic_term},
-          {"value_jump_max",
-           all.value_jumps.empty() ? 0.0 : *std::max_element(all.value_jumps.begin(), all.value_jumps.end())}};
-  add_quantiles(row, "slope_jump", all.slope_jumps);
-  return {row};
+  std::sort(slope_jumps.begin(), slope_jumps.end());
+  record.slope_jumps = shown_quantiles(slope_jumps);
+  return {record};
 }
+
+}  // namespace
+
+extern const Measure cell_cubic;
+const Measure cell_cubic{MeasureDefinition{
+    .name = "cell_cubic",
+    .summary = "whether a trilinear ray is a cubic inside each cell, and how its slope jumps between cells",
+    .read = read_options,
+    .columns = columns,
+    .of_field = records_of_field}};
 
 }  // namespace raytruth

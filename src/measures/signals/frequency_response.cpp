@@ -5,7 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <iterator>
 #include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace raytruth {
 
@@ -27,7 +32,7 @@ struct Options {
   std::vector<int> samples_per_voxel;
 };
 
-Options read_options(const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "phases", "samples_per_voxel"});
   constexpr std::int64_t most_samples_per_voxel = 4096;
   Options options;
@@ -93,122 +98,196 @@ Peak largest_difference(const Spectrum& a, const Spectrum& b, double low, double
   return find_peak(low, high, [&](std::size_t i) { return std::abs(a.response[i] - b.response[i]); });
 }
 
-/// The cells by which rows are known.
-Row key_cells(const Spectrum& spectrum, const char* part) {
-  const auto& phase = spectrum.path.virtual_phase;
-  const bool is_closed = spectrum.samples_per_voxel == 0;
-  return {{"part", part},
-          {"reconstruction", spectrum.path.prefiltered ? "prefiltered" : "raw"},
-          {"curve", phase ? fmt::format("virtual, phase {}", *phase) : std::string("true")},
-          {"phase", phase ? Value(*phase) : Value()},
-          {"samples_per_voxel", is_closed ? Value() : Value(std::int64_t{spectrum.samples_per_voxel})}};
+/// The response at one frequency.
+struct CurvePoint {
+  double frequency = 0;
+  double amplitude = 0;
+  double radius = 0;
+};
+
+/// What the amplitude's radius makes of its level.
+double level_radius(const CurvePoint& point) {
+  const double middle = level(point.amplitude);
+  return std::max(level(point.amplitude + point.radius) - middle,
+                  middle - level(std::max(point.amplitude - point.radius, 0.0)));
 }
 
-void add_curve(std::vector<Row>& rows, const Spectrum& spectrum) {
-  for (std::size_t i = 0; i < spectrum.response.size(); i += row_spacing) {
-    Row row = key_cells(spectrum, "curve");
-    const double amplitude = std::abs(spectrum.response[i]);
-    row.emplace_back("frequency", frequency_at(static_cast<int>(i)));
-    row.emplace_back("amplitude", amplitude);
-    row.emplace_back("amplitude_radius", spectrum.radius);
-    row.emplace_back("level_db", level(amplitude));
-    row.emplace_back("level_db_radius", std::max(level(amplitude + spectrum.radius) - level(amplitude),
-                                                 level(amplitude) - level(std::max(amplitude - spectrum.radius, 0.0))));
-    rows.push_back(std::move(row));
-  }
+/// Largest differences of virtual samples from true ones that are read alike.
+struct Differences {
+  Peak pass;
+  Peak transition;
+  Peak stop;
+};
+
+/// A measured response beside the closed form.
+struct AgainstClosedForm {
+  double alias_bound = 0;
+  double difference = 0;
+  double difference_over_bound = 0;
+};
+
+/// What the response comes to at all frequencies.
+struct Summary {
+  Peak from_half;
+  Peak from_one;
+  std::optional<Differences> differences = {};  ///< none: of true samples
+  double radius = 0;
+  std::optional<AgainstClosedForm> against_closed_form = {};  ///< none: of the closed form
+};
+
+struct Record {
+  ReconstructionPath path;
+  int samples_per_voxel = 0;  ///< 0: closed form
+  std::optional<Summary> summary = {};
+  std::optional<CurvePoint> point = {};
+};
+
+void add_curve(std::vector<Record>& records, const Spectrum& spectrum) {
+  for (std::size_t i = 0; i < spectrum.response.size(); i += row_spacing)
+    records.push_back(
+        {.path = spectrum.path,
+         .samples_per_voxel = spectrum.samples_per_voxel,
+         .point = CurvePoint{frequency_at(static_cast<int>(i)), std::abs(spectrum.response[i]), spectrum.radius}});
 }
 
-void add_peak(Row& row, const std::string& name, const Peak& peak) {
-  row.emplace_back(name + "_db", level(peak.value));
-  row.emplace_back(name + "_frequency", peak.frequency);
-}
-
-Row summary(const Spectrum& spectrum, const Spectrum& closed, const Spectrum& true_samples) {
-  Row row = key_cells(spectrum, "summary");
+Summary summary_of(const Spectrum& spectrum, const Spectrum& closed, const Spectrum& true_samples) {
   const auto amplitude = [&](std::size_t i) { return std::abs(spectrum.response[i]); };
-  add_peak(row, "peak_from_half", find_peak(0.5, cycles, amplitude));
-  add_peak(row, "peak_from_one", find_peak(1, cycles, amplitude));
-  if (spectrum.path.virtual_phase) {
-    add_peak(row, "difference_pass", largest_difference(spectrum, true_samples, 0, 0.5));
-    add_peak(row, "difference_transition", largest_difference(spectrum, true_samples, 0.5, 1));
-    add_peak(row, "difference_stop", largest_difference(spectrum, true_samples, 1, cycles));
-  }
-  row.emplace_back("amplitude_radius", spectrum.radius);
+  Summary summary{.from_half = find_peak(0.5, cycles, amplitude),
+                  .from_one = find_peak(1, cycles, amplitude),
+                  .radius = spectrum.radius};
+  if (spectrum.path.virtual_phase)
+    summary.differences = {.pass = largest_difference(spectrum, true_samples, 0, 0.5),
+                           .transition = largest_difference(spectrum, true_samples, 0.5, 1),
+                           .stop = largest_difference(spectrum, true_samples, 1, cycles)};
   if (spectrum.samples_per_voxel > 0) {
     const double difference = largest_difference(spectrum, closed, 0, cycles).value;
-    row.emplace_back("alias_bound", spectrum.aliases);
-    row.emplace_back("closed_form_difference", difference);
-    row.emplace_back("closed_form_difference_over_bound",
-                     difference / (spectrum.aliases + spectrum.radius + closed.radius));
+    summary.against_closed_form = {
+        .alias_bound = spectrum.aliases,
+        .difference = difference,
+        .difference_over_bound = difference / (spectrum.aliases + spectrum.radius + closed.radius)};
   }
-  return row;
+  return summary;
 }
 
-}  // namespace
+/// NAME_db and NAME_frequency.
+Columns<Peak> peak_columns(const std::string& name, const std::string& description) {
+  return {
+      {.name = name + "_db",
+       .unit = "dB",
+       .description = description,
+       .cell = [](const Peak& peak) { return level(peak.value); }},
+      {.name = name + "_frequency", .unit = "cycles/voxel", .description = "where that is", .cell = &Peak::frequency}};
+}
 
-std::vector<Column> frequency_response_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_options(options);
-  std::vector<Column> columns{
-      {.name = "part", .unit = "", .description = "curve: at one frequency; summary: of all", .is_key = true},
+Columns<Record> key_columns() {
+  return {
+      {.name = "part",
+       .description = "curve: at one frequency; summary: of all",
+       .is_key = true,
+       .cell = [](const Record& record) { return record.summary ? "summary" : "curve"; }},
       {.name = "reconstruction",
-       .unit = "",
        .description = "cubic B-spline: raw, or prefiltered to pass through the voxels",
-       .is_key = true},
+       .is_key = true,
+       .cell = [](const Record& record) { return record.path.prefiltered ? "prefiltered" : "raw"; }},
       {.name = "curve",
-       .unit = "",
        .description = "true: the spline itself; virtual: Catmull-Rom through its samples at unit steps",
-       .is_key = true},
+       .is_key = true,
+       .cell =
+           [](const Record& record) {
+             const auto& phase = record.path.virtual_phase;
+             return phase ? fmt::format("virtual, phase {}", *phase) : std::string("true");
+           }},
       {.name = "phase",
        .unit = "voxel",
        .description = "of the samples at unit steps, on a ray parallel to an axis",
-       .is_key = true},
+       .is_key = true,
+       .cell = [](const Record& record) { return record.path.virtual_phase; }},
       {.name = "samples_per_voxel",
        .unit = "1/voxel",
        .description = "at which the signal of an impulse in a voxel grid is read; null: closed form",
-       .is_key = true},
-      {.name = "frequency", .unit = "cycles/voxel", .description = "0 to 2", .is_key = true},
+       .is_key = true,
+       .cell =
+           [](const Record& record) {
+             return record.samples_per_voxel > 0 ? std::optional(record.samples_per_voxel) : std::nullopt;
+           }},
+  };
+}
+
+Columns<CurvePoint> point_columns() {
+  return {
+      {.name = "frequency",
+       .unit = "cycles/voxel",
+       .description = "0 to 2",
+       .is_key = true,
+       .cell = &CurvePoint::frequency},
       {.name = "amplitude",
-       .unit = "",
        .description = "of the response; 1 at frequency 0",
-       .radius = "amplitude_radius"},
-      {.name = "amplitude_radius", .unit = "", .description = "bound on the rounding error of the amplitude"},
+       .radius = "amplitude_radius",
+       .cell = &CurvePoint::amplitude},
+      {.name = "amplitude_radius",
+       .description = "bound on the rounding error of the amplitude",
+       .cell = &CurvePoint::radius},
       {.name = "level_db",
        .unit = "dB",
        .description = "20 log10 of the amplitude; -300 stands for all below, so for 0 too",
-       .radius = "level_db_radius"},
-      {.name = "level_db_radius", .unit = "dB", .description = "what the amplitude's radius makes of the level"},
+       .radius = "level_db_radius",
+       .cell = [](const CurvePoint& point) { return level(point.amplitude); }},
+      {.name = "level_db_radius",
+       .unit = "dB",
+       .description = "what the amplitude's radius makes of the level",
+       .cell = level_radius},
   };
-  const auto add_peak_columns = [&columns](const std::string& name, const std::string& description) {
-    columns.push_back({.name = name + "_db", .unit = "dB", .description = description});
-    columns.push_back({.name = name + "_frequency", .unit = "cycles/voxel", .description = "where that is"});
-  };
-  add_peak_columns("peak_from_half", "largest level from 0.5 cycles per voxel on");
-  add_peak_columns("peak_from_one", "largest level from 1 cycle per voxel on");
+}
+
+Columns<Differences> difference_columns() {
   const std::string difference = "largest difference from the response of true samples read alike, as a level: ";
-  add_peak_columns("difference_pass", difference + "from 0 to 0.5 cycles per voxel");
-  add_peak_columns("difference_transition", difference + "from 0.5 to 1 cycle per voxel");
-  add_peak_columns("difference_stop", difference + "from 1 cycle per voxel on");
-  columns.push_back({.name = "alias_bound",
-                     .unit = "",
-                     .description = "bound on the aliases of a measured response: its samples repeat the spectrum"});
-  columns.push_back({.name = "closed_form_difference",
-                     .unit = "",
-                     .description = "largest difference of a measured response from the closed form"});
-  columns.push_back({.name = "closed_form_difference_over_bound",
-                     .unit = "",
-                     .description = "the same over the bounds on aliases and rounding"});
+  Columns<Differences> columns;
+  append_part(columns, &Differences::pass,
+              peak_columns("difference_pass", difference + "from 0 to 0.5 cycles per voxel"));
+  append_part(columns, &Differences::transition,
+              peak_columns("difference_transition", difference + "from 0.5 to 1 cycle per voxel"));
+  append_part(columns, &Differences::stop, peak_columns("difference_stop", difference + "from 1 cycle per voxel on"));
   return columns;
 }
 
-std::vector<Row> frequency_response_rows(const Experiment& /*experiment*/, const JsonReader& options,
-                                         const Field& /*field*/) {
-  const Options asked = read_options(options);
+Columns<AgainstClosedForm> closed_form_columns() {
+  return {{.name = "alias_bound",
+           .description = "bound on the aliases of a measured response: its samples repeat the spectrum",
+           .cell = &AgainstClosedForm::alias_bound},
+          {.name = "closed_form_difference",
+           .description = "largest difference of a measured response from the closed form",
+           .cell = &AgainstClosedForm::difference},
+          {.name = "closed_form_difference_over_bound",
+           .description = "the same over the bounds on aliases and rounding",
+           .cell = &AgainstClosedForm::difference_over_bound}};
+}
+
+Columns<Summary> summary_columns() {
+  Columns<Summary> columns;
+  append_part(columns, &Summary::from_half,
+              peak_columns("peak_from_half", "largest level from 0.5 cycles per voxel on"));
+  append_part(columns, &Summary::from_one, peak_columns("peak_from_one", "largest level from 1 cycle per voxel on"));
+  append_part(columns, &Summary::differences, difference_columns());
+  columns.push_back(written_here<Summary>("amplitude_radius", &Summary::radius));
+  append_part(columns, &Summary::against_closed_form, closed_form_columns());
+  return columns;
+}
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns = key_columns();
+  append_part(columns, &Record::point, point_columns());
+  append_part(columns, &Record::summary, summary_columns());
+  return columns;
+}
+
+/// The summaries of all ways, then their curves.
+std::vector<Record> records(const Experiment& /*experiment*/, const Options& options) {
   std::vector<std::optional<double>> phases{{}};
-  phases.insert(phases.end(), asked.phases.begin(), asked.phases.end());
+  phases.insert(phases.end(), options.phases.begin(), options.phases.end());
   std::vector<int> ways{0};
-  ways.insert(ways.end(), asked.samples_per_voxel.begin(), asked.samples_per_voxel.end());
-  std::vector<Row> curves;
-  std::vector<Row> rows;
+  ways.insert(ways.end(), options.samples_per_voxel.begin(), options.samples_per_voxel.end());
+  std::vector<Record> curves;
+  std::vector<Record> records;
   for (const bool prefiltered : {false, true})
     for (const int way : ways) {
       std::optional<Spectrum> true_samples;
@@ -217,12 +296,24 @@ std::vector<Row> frequency_response_rows(const Experiment& /*experiment*/, const
         const Spectrum closed = closed_spectrum(path);
         const Spectrum spectrum = way == 0 ? closed : measured_spectrum(path, way);
         if (!phase) true_samples = spectrum;
-        rows.push_back(summary(spectrum, closed, *true_samples));
+        records.push_back(
+            {.path = path, .samples_per_voxel = way, .summary = summary_of(spectrum, closed, *true_samples)});
         add_curve(curves, spectrum);
       }
     }
-  rows.insert(rows.end(), std::make_move_iterator(curves.begin()), std::make_move_iterator(curves.end()));
-  return rows;
+  records.insert(records.end(), std::make_move_iterator(curves.begin()), std::make_move_iterator(curves.end()));
+  return records;
 }
+
+}  // namespace
+
+// Not of the measure's own name, which is that of the function it studies.
+extern const Measure frequency_responses;
+const Measure frequency_responses{
+    MeasureDefinition{.name = "frequency_response",
+                      .summary = "Fourier transforms of the B-spline and of virtual samples, closed form and measured",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_experiment = records}};
 
 }  // namespace raytruth

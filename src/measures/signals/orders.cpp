@@ -10,10 +10,21 @@
 #include <tbb/parallel_for.h>
 
 #include <array>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace raytruth {
 
 namespace {
+
+struct Options {};
+
+Options read_options(const Experiment& experiment, const JsonReader& json) {
+  json.only({"kind"});
+  need_signal_schemes(experiment);
+  return {};
+}
 
 struct Scratch {
   Chain<3> signal;
@@ -53,62 +64,85 @@ Means measure_means(const Experiment& experiment, const Field& field, Regime reg
   return means;
 }
 
-std::array<LevelError, level_count> with_radius(const std::array<double, level_count>& errors, double radius) {
+ShownOrder order_of(const std::array<double, level_count>& errors, double radius) {
   std::array<LevelError, level_count> levels;
   for (std::size_t level = 0; level < level_count; ++level) levels[level] = {errors[level], radius};
-  return levels;
+  return shown_order(levels);
+}
+
+/// xi or xi_max: at a step, or the order that all steps show.
+struct Finding {
+  std::optional<LevelError> mean = {};
+  std::optional<ShownOrder> order = {};
+};
+
+struct Record {
+  ConvergenceKeys keys;
+  Finding xi = {};
+  Finding xi_max = {};
+  std::optional<std::string> refusal = {};
+};
+
+Columns<Finding> finding_columns(const std::string& symbol, const std::string& unit) {
+  Columns<Finding> columns;
+  append_part(columns, &Finding::mean,
+              Columns<LevelError>{{.name = symbol + "_mean",
+                                   .unit = unit,
+                                   .description = symbol + ", mean over rays",
+                                   .radius = symbol + "_mean_radius",
+                                   .cell = &LevelError::error},
+                                  {.name = symbol + "_mean_radius",
+                                   .unit = unit,
+                                   .description = "bound on its rounding error",
+                                   .cell = &LevelError::radius}});
+  append_part(columns, &Finding::order, shown_order_columns(symbol, symbol + "_mean"));
+  return columns;
+}
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns;
+  append_part(columns, &Record::keys, convergence_key_columns());
+  append_part(columns, &Record::xi, finding_columns("xi", "scalar*voxel"));
+  append_part(columns, &Record::xi_max, finding_columns("xi_max", "scalar"));
+  append_refusal(columns, &Record::refusal);
+  return columns;
+}
+
+std::vector<Record> records_of_field(const Experiment& experiment, const Options& /*options*/, const Field& field) {
+  const double radius = signal_radius * experiment.rays.length;
+  std::vector<Record> records;
+  for (const auto& [regime, regime_name] : regimes)
+    for (const std::string& scheme : experiment.schemes)
+      catalogue::visit_scheme(scheme, [&, regime = regime, regime_name = regime_name]<class S>() {
+        const auto keys = [&](std::optional<double> step) {
+          return ConvergenceKeys{.regime = std::string(regime_name), .scheme = scheme, .step = step};
+        };
+        Samples<double> samples;
+        if (regime == Regime::constant) samples.step = 1;
+        if (const std::string_view why = refusal<S>(samples); !why.empty()) {
+          records.push_back({.keys = keys({}), .refusal = std::string(why)});
+          return;
+        }
+        const Means means = measure_means<S>(experiment, field, regime);
+        for (std::size_t level = 0; level < level_count; ++level)
+          records.push_back({.keys = keys(step_of(level)),
+                             .xi = {.mean = LevelError{means.xi[level], radius}},
+                             .xi_max = {.mean = LevelError{means.xi_max[level], signal_radius}}});
+        records.push_back({.keys = keys({}),
+                           .xi = {.order = order_of(means.xi, radius)},
+                           .xi_max = {.order = order_of(means.xi_max, signal_radius)}});
+      });
+  return records;
 }
 
 }  // namespace
 
-std::vector<Column> orders_columns(const Experiment& experiment, const JsonReader& options) {
-  options.only({"kind"});
-  need_signal_schemes(experiment);
-  std::vector<Column> columns = convergence_columns();
-  for (const auto& [name, unit] : {std::pair{"xi", "scalar*voxel"}, {"xi_max", "scalar"}}) {
-    const std::string symbol = name;
-    columns.push_back({.name = symbol + "_mean",
-                       .unit = unit,
-                       .description = symbol + ", mean over rays",
-                       .is_key = false,
-                       .radius = symbol + "_mean_radius"});
-    columns.push_back({.name = symbol + "_mean_radius", .unit = unit, .description = "bound on its rounding error"});
-    const std::vector<Column> of_order = order_columns(symbol, symbol + "_mean");
-    columns.insert(columns.end(), of_order.begin(), of_order.end());
-  }
-  return columns;
-}
-
-std::vector<Row> orders_rows(const Experiment& experiment, const JsonReader& /*options*/, const Field& field) {
-  const double radius = signal_radius * experiment.rays.length;
-  std::vector<Row> rows;
-  for (const auto& [regime, regime_name] : regimes)
-    for (const std::string& scheme : experiment.schemes)
-      catalogue::visit_scheme(scheme, [&, regime = regime, regime_name = regime_name]<class S>() {
-        const Row keys{{"regime", std::string(regime_name)}, {"scheme", scheme}};
-        Samples<double> samples;
-        if (regime == Regime::constant) samples.step = 1;
-        if (const std::string_view why = refusal<S>(samples); !why.empty()) {
-          Row& row = rows.emplace_back(keys);
-          row.insert(row.end(), {{"part", "fit"}, {"status", "refused"}, {"why", std::string(why)}});
-          return;
-        }
-        const Means means = measure_means<S>(experiment, field, regime);
-        for (std::size_t level = 0; level < level_count; ++level) {
-          Row& row = rows.emplace_back(keys);
-          row.insert(row.end(), {{"part", "point"},
-                                 {"step", step_of(level)},
-                                 {"xi_mean", means.xi[level]},
-                                 {"xi_mean_radius", radius},
-                                 {"xi_max_mean", means.xi_max[level]},
-                                 {"xi_max_mean_radius", signal_radius}});
-        }
-        Row& row = rows.emplace_back(keys);
-        row.emplace_back("part", "fit");
-        add_order(row, "xi", with_radius(means.xi, radius));
-        add_order(row, "xi_max", with_radius(means.xi_max, signal_radius));
-      });
-  return rows;
-}
+extern const Measure orders;
+const Measure orders{MeasureDefinition{
+    .name = "orders",
+    .summary = "fitted orders of xi and xi_max, refined inside cells and at constant steps across them",
+    .read = read_options,
+    .columns = columns,
+    .of_field = records_of_field}};
 
 }  // namespace raytruth

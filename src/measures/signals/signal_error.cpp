@@ -1,6 +1,7 @@
 #include "raytruth/metrics/signal_error.hpp"
 #include "experiments/measure.hpp"
 #include "measures/quantile_columns.hpp"
+#include "measures/ray_study.hpp"
 #include "raytruth/catalogue.hpp"
 #include "raytruth/signals/ray_ensemble.hpp"
 #include "raytruth/signals/trilinear.hpp"
@@ -15,6 +16,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
+#include <utility>
 
 namespace raytruth {
 
@@ -95,10 +98,7 @@ std::map<std::string, Errors> measure_rays(const Experiment& experiment, const S
     for (std::size_t ray = range.begin(); ray < range.end(); ++ray) {
       trace_trilinear(field.grid, random_ray(field.grid, experiment.rays.length, experiment.seed, ray), signal);
       if (signal.is_constant()) continue;
-      if (sampling.step)
-        sample_constant(signal, *sampling.step, samples);
-      else
-        sample_cells(signal, samples);
+      sample(signal, sampling, samples);
       for (auto& entry : errors) {
         Errors& error = entry.second;
         catalogue::visit_scheme(entry.first, [&]<class S>() {
@@ -124,10 +124,6 @@ double mean(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value;
   return sum / static_cast<double>(values.size());
-}
-
-Value percentile(const std::vector<double>& sorted, double printed) {
-  return sorted.empty() ? Value() : Value(percentile_of(sorted, printed));
 }
 
 /// The ratios, ray by ray, that have a meaning, and how far rounding can move any of their quantiles.
@@ -172,112 +168,182 @@ Ratios measure_ratios(const Errors& numerator, const Errors& denominator, double
   return ratios;
 }
 
-}  // namespace
+/// xi of another scheme over that of the row's.
+struct RatioFound {
+  std::string numerator;
+  std::string denominator;
+  Ratios ratios;
+};
 
-std::vector<Column> signal_error_columns(const Experiment& experiment, const JsonReader& options) {
-  read_options(experiment, options);
-  std::vector<Column> columns{
-      {.name = "signal", .unit = "", .description = "reconstruction along the ray", .is_key = true},
-      {.name = "sampling", .unit = "", .description = "where samples are taken", .is_key = true},
-      {.name = "step", .unit = "voxel", .description = "distance of samples, constant sampling only", .is_key = true},
-      {.name = "scheme", .unit = "", .description = "the approximation", .is_key = true},
-      {.name = "data_min", .unit = "data", .description = "the field's smallest value, scaled to 0"},
-      {.name = "data_max", .unit = "data", .description = "the field's largest value, scaled to 1"},
-      {.name = "rays", .unit = "", .description = "rays drawn"},
-      {.name = "rays_constant", .unit = "", .description = "of these, rays with a constant signal, left out"},
-      {.name = "fetches_mean", .unit = "", .description = "samples and extra fetches of a ray, mean over rays"},
-  };
-  const auto add = [&columns](const std::string& name, const std::string& unit, const std::string& description) {
-    const auto quantiles = quantile_columns(name, unit, description + " over rays", name + "_radius");
-    columns.insert(columns.end(), quantiles.begin(), quantiles.end());
-    columns.push_back(
-        {.name = name + "_radius", .unit = unit, .description = "bound on the rounding error of the columns above"});
-  };
-  add("xi", "scalar*voxel", "integral of |s - s^| along the ray, s scaled to [0, 1]");
-  add("xi_per_length", "scalar", "xi over the ray's length");
-  add("xi_max", "scalar", "largest |s - s^| on the ray");
-  add("xi_max_per_length", "scalar/voxel", "xi_max over the ray's length");
-  columns.push_back({.name = "ratio_of", .unit = "", .description = "the scheme whose xi is divided by this one's"});
-  add("ratio", "", "xi of the scheme ratio_of over xi of this scheme");
-  columns.push_back(
-      {.name = "ratio_undefined",
-       .unit = "",
-       .description = "rays left out of the ratio: its denominator is below 1e-12 of range times length"});
-  columns.push_back(
-      {.name = "better_share", .unit = "", .description = "rays on which xi is smaller than that of ratio_of"});
-  columns.push_back(
-      {.name = "worse_share", .unit = "", .description = "rays on which xi is larger than that of ratio_of"});
-  columns.push_back(
-      {.name = "tied_share", .unit = "", .description = "rays on which they differ by at most 1e-12 of themselves"});
-  columns.push_back({.name = "ratio_why", .unit = "", .description = "why there is no ratio"});
-  columns.push_back({.name = "printed_xi", .unit = "scalar*voxel", .description = "the published figure"});
-  columns.push_back({.name = "printed_xi_percentile", .unit = "", .description = "share of rays with a smaller xi"});
-  columns.push_back({.name = "printed_ratio", .unit = "", .description = "the quotient of the published figures"});
-  columns.push_back(
-      {.name = "printed_ratio_percentile", .unit = "", .description = "share of rays with a smaller ratio"});
+/// A figure that was published, and the share of rays below it; none without rays.
+struct PrintedFigure {
+  double value = 0;
+  std::optional<double> percentile;
+};
+
+struct PrintedFound {
+  PrintedFigure xi;
+  std::optional<PrintedFigure> ratio = {};
+};
+
+PrintedFigure printed_among(const std::vector<double>& sorted, double printed) {
+  return {printed, sorted.empty() ? std::nullopt : std::optional(percentile_of(sorted, printed))};
+}
+
+/// A scheme with one way of sampling, over the rays of a field.
+struct Record {
+  Sampling sampling;
+  std::string scheme;
+  std::pair<double, double> data_range;
+  RayCounts rays;
+  std::optional<double> fetches_mean = {};
+  double length = 0;              ///< of a ray
+  std::vector<double> sorted_xi;  ///< of rays that are not constant
+  std::vector<double> sorted_xi_max;
+  std::optional<RatioFound> ratio = {};
+  std::optional<PrintedFound> printed = {};
+};
+
+/// The quantiles of a distribution over rays, and NAME_radius, the bound on their rounding error.
+template <class Part, class Quantiles, class Radius>
+void append_quantiles(Columns<Part>& columns, const std::string& name, const std::string& unit,
+                      const std::string& description, Quantiles quantiles, Radius radius) {
+  append_part(columns, quantiles, shown_quantile_columns(name, unit, description + " over rays", name + "_radius"));
+  columns.push_back({.name = name + "_radius",
+                     .unit = unit,
+                     .description = "bound on the rounding error of the columns above",
+                     .cell = radius});
+}
+
+Columns<RatioFound> ratio_columns() {
+  Columns<RatioFound> columns{{.name = "ratio_of",
+                               .description = "the scheme whose xi is divided by this one's",
+                               .cell = &RatioFound::numerator}};
+  append_quantiles(
+      columns, "ratio", "", "xi of the scheme ratio_of over xi of this scheme",
+      [](const RatioFound& ratio) { return shown_quantiles(ratio.ratios.sorted); },
+      [](const RatioFound& ratio) {
+        return ratio.ratios.sorted.empty() ? std::nullopt : std::optional(ratio.ratios.radius);
+      });
+  append(columns, {{.name = "ratio_undefined",
+                    .description = "rays left out of the ratio: its denominator is below 1e-12 of range times length",
+                    .cell = [](const RatioFound& ratio) { return ratio.ratios.undefined; }},
+                   {.name = "better_share",
+                    .description = "rays on which xi is smaller than that of ratio_of",
+                    .cell = [](const RatioFound& ratio) { return ratio.ratios.better; }},
+                   {.name = "worse_share",
+                    .description = "rays on which xi is larger than that of ratio_of",
+                    .cell = [](const RatioFound& ratio) { return ratio.ratios.worse; }},
+                   {.name = "tied_share",
+                    .description = "rays on which they differ by at most 1e-12 of themselves",
+                    .cell = [](const RatioFound& ratio) { return ratio.ratios.tied; }},
+                   {.name = "ratio_why", .description = "why there is no ratio", .cell = [](const RatioFound& ratio) {
+                      return ratio.ratios.sorted.empty()
+                                 ? std::optional("xi of " + ratio.denominator +
+                                                 " is below 1e-12 of range times length on every ray")
+                                 : std::nullopt;
+                    }}});
   return columns;
 }
 
-std::vector<Row> signal_error_rows(const Experiment& experiment, const JsonReader& options, const Field& field) {
-  const Options asked = read_options(experiment, options);
+/// NAME and NAME_percentile.
+Columns<PrintedFigure> printed_columns(const std::string& name, const std::string& unit, const std::string& description,
+                                       const std::string& quantity) {
+  return {{.name = name, .unit = unit, .description = description, .cell = &PrintedFigure::value},
+          {.name = name + "_percentile",
+           .description = "share of rays with a smaller " + quantity,
+           .cell = &PrintedFigure::percentile}};
+}
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns{{.name = "signal",
+                           .description = "reconstruction along the ray",
+                           .is_key = true,
+                           .cell = [](const Record& /*record*/) { return "trilinear"; }}};
+  append_part(columns, &Record::sampling, sampling_key_columns());
+  append(columns, {{.name = "scheme", .description = "the approximation", .is_key = true, .cell = &Record::scheme},
+                   {.name = "data_min",
+                    .unit = "data",
+                    .description = "the field's smallest value, scaled to 0",
+                    .cell = [](const Record& record) { return record.data_range.first; }},
+                   {.name = "data_max",
+                    .unit = "data",
+                    .description = "the field's largest value, scaled to 1",
+                    .cell = [](const Record& record) { return record.data_range.second; }}});
+  append_part(columns, &Record::rays, ray_count_columns());
+  columns.push_back({.name = "fetches_mean",
+                     .description = "samples and extra fetches of a ray, mean over rays",
+                     .cell = &Record::fetches_mean});
+  append_quantiles(
+      columns, "xi", "scalar*voxel", "integral of |s - s^| along the ray, s scaled to [0, 1]",
+      [](const Record& record) { return shown_quantiles(record.sorted_xi); },
+      [](const Record& record) { return signal_radius * record.length; });
+  append_quantiles(
+      columns, "xi_per_length", "scalar", "xi over the ray's length",
+      [](const Record& record) { return shown_quantiles(record.sorted_xi, 1 / record.length); },
+      [](const Record& /*record*/) { return signal_radius; });
+  append_quantiles(
+      columns, "xi_max", "scalar", "largest |s - s^| on the ray",
+      [](const Record& record) { return shown_quantiles(record.sorted_xi_max); },
+      [](const Record& /*record*/) { return signal_radius; });
+  append_quantiles(
+      columns, "xi_max_per_length", "scalar/voxel", "xi_max over the ray's length",
+      [](const Record& record) { return shown_quantiles(record.sorted_xi_max, 1 / record.length); },
+      [](const Record& record) { return signal_radius / record.length; });
+  append_part(columns, &Record::ratio, ratio_columns());
+  Columns<PrintedFound> of_printed;
+  append_part(of_printed, &PrintedFound::xi,
+              printed_columns("printed_xi", "scalar*voxel", "the published figure", "xi"));
+  append_part(of_printed, &PrintedFound::ratio,
+              printed_columns("printed_ratio", "", "the quotient of the published figures", "ratio"));
+  append_part(columns, &Record::printed, of_printed);
+  return columns;
+}
+
+/// The published figures of a scheme, if there are any: of its xi, and of its ratio where it has one.
+std::optional<PrintedFound> compare_with_printed(const Options& options, const std::string& field,
+                                                 const std::string& scheme, const Record& record) {
+  const auto printed = find_printed(options, scheme, field);
+  if (!printed) return std::nullopt;
+  PrintedFound found{.xi = printed_among(record.sorted_xi, *printed)};
+  if (record.ratio)
+    if (const auto numerator = find_printed(options, record.ratio->numerator, field))
+      found.ratio = printed_among(record.ratio->ratios.sorted, *numerator / *printed);
+  return found;
+}
+
+std::vector<Record> records_of_field(const Experiment& experiment, const Options& options, const Field& field) {
   const double length = experiment.rays.length;
-  std::vector<Row> rows;
+  std::vector<Record> records;
   for (const Sampling& sampling : experiment.samplings) {
     const auto errors = measure_rays(experiment, sampling, field);
     for (const std::string& scheme : experiment.schemes) {
       const Errors& error = errors.at(scheme);
-      const auto sorted_xi = sorted_numbers(error.xi);
-      const auto sorted_xi_max = sorted_numbers(error.xi_max);
-
-      Row& row = rows.emplace_back();
-      row.emplace_back("signal", "trilinear");
-      row.emplace_back("sampling", sampling.kind);
-      row.emplace_back("step", sampling.step ? Value(*sampling.step) : Value());
-      row.emplace_back("scheme", scheme);
-      row.emplace_back("data_min", field.data_range.first);
-      row.emplace_back("data_max", field.data_range.second);
-      row.emplace_back("rays", experiment.rays.count);
-      row.emplace_back("rays_constant", experiment.rays.count - static_cast<std::int64_t>(sorted_xi.size()));
-      row.emplace_back("fetches_mean", sorted_xi.empty() ? Value() : Value(mean(sorted_numbers(error.fetches))));
-      add_quantiles(row, "xi", sorted_xi);
-      row.emplace_back("xi_radius", signal_radius * length);
-      add_quantiles(row, "xi_per_length", sorted_xi, 1 / length);
-      row.emplace_back("xi_per_length_radius", signal_radius);
-      add_quantiles(row, "xi_max", sorted_xi_max);
-      row.emplace_back("xi_max_radius", signal_radius);
-      add_quantiles(row, "xi_max_per_length", sorted_xi_max, 1 / length);
-      row.emplace_back("xi_max_per_length_radius", signal_radius / length);
-
-      const auto numerator = asked.numerator.find(scheme);
-      Ratios ratios;
-      if (numerator != asked.numerator.end()) {
-        ratios = measure_ratios(errors.at(numerator->second), error, length);
-        row.emplace_back("ratio_of", numerator->second);
-        add_quantiles(row, "ratio", ratios.sorted);
-        row.emplace_back("ratio_radius", ratios.sorted.empty() ? Value() : Value(ratios.radius));
-        row.emplace_back("ratio_undefined", static_cast<std::int64_t>(ratios.undefined));
-        row.emplace_back("better_share", ratios.better);
-        row.emplace_back("worse_share", ratios.worse);
-        row.emplace_back("tied_share", ratios.tied);
-        row.emplace_back("ratio_why",
-                         ratios.sorted.empty()
-                             ? Value("xi of " + scheme + " is below 1e-12 of range times length on every ray")
-                             : Value());
-      }
-      if (const auto printed = find_printed(asked, scheme, field.name)) {
-        row.emplace_back("printed_xi", *printed);
-        row.emplace_back("printed_xi_percentile", percentile(sorted_xi, *printed));
-        const auto printed_numerator =
-            numerator == asked.numerator.end() ? std::nullopt : find_printed(asked, numerator->second, field.name);
-        if (printed_numerator) {
-          const double printed_ratio = *printed_numerator / *printed;
-          row.emplace_back("printed_ratio", printed_ratio);
-          row.emplace_back("printed_ratio_percentile", percentile(ratios.sorted, printed_ratio));
-        }
-      }
+      const auto fetches = sorted_numbers(error.fetches);
+      Record& record = records.emplace_back(Record{.sampling = sampling,
+                                                   .scheme = scheme,
+                                                   .data_range = field.data_range,
+                                                   .rays = ray_counts(experiment, fetches.size()),
+                                                   .length = length,
+                                                   .sorted_xi = sorted_numbers(error.xi),
+                                                   .sorted_xi_max = sorted_numbers(error.xi_max)});
+      if (!fetches.empty()) record.fetches_mean = mean(fetches);
+      if (const auto numerator = options.numerator.find(scheme); numerator != options.numerator.end())
+        record.ratio = {numerator->second, scheme, measure_ratios(errors.at(numerator->second), error, length)};
+      record.printed = compare_with_printed(options, field.name, scheme, record);
     }
   }
-  return rows;
+  return records;
 }
+
+}  // namespace
+
+extern const Measure signal_error;
+const Measure signal_error{MeasureDefinition{
+    .name = "signal_error",
+    .summary = "xi and xi_max of every scheme along random rays: quantiles, and ratios between schemes",
+    .read = read_options,
+    .columns = columns,
+    .of_field = records_of_field}};
 
 }  // namespace raytruth

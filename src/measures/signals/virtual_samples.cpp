@@ -1,4 +1,5 @@
 #include "experiments/measure.hpp"
+#include "measures/ray_study.hpp"
 #include "raytruth/catalogue.hpp"
 #include "raytruth/metrics/sample_error.hpp"
 #include "raytruth/signals/ray_ensemble.hpp"
@@ -14,12 +15,21 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace raytruth {
 
 namespace {
+
+struct Options {};
+
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
+  json.only({"kind"});
+  return {};
+}
 
 // The peak of PSNR: fields are scaled to [0, 1].
 constexpr double peak = 1;
@@ -168,103 +178,164 @@ double largest_magnitude(const Grid& grid) {
   return std::max(std::abs(low), std::abs(high));
 }
 
-Value number_if(bool is_known, double value) { return is_known ? Value(value) : Value(); }
+/// A number and how far it may be from the true one.
+struct Bounded {
+  double value = 0;
+  double radius = 0;
+};
+
+/// What a method's errors come to, beside those of Cubic x1 + VS x3 at the same samples.
+struct Figures {
+  std::int64_t samples = 0;
+  std::optional<double> rmse;  ///< none where every ray is constant; so the maximum
+  std::optional<double> error_max = {};
+  double error_radius = 0;
+  std::optional<Bounded> psnr = {};  ///< none where the RMSE is rounding
+  std::optional<Bounded> rmse_ratio = {};
+
+  [[nodiscard]] std::optional<std::string_view> why_no_psnr() const {
+    if (psnr) return std::nullopt;
+    return rmse ? "the RMSE is rounding" : "every ray is constant";
+  }
+};
 
 /// `virtual_3` is the error of Cubic x1 + VS x3 at the same samples.
-void add_figures(Row& row, const SampleError& error, const SampleError& virtual_3, double radius) {
-  const bool has_rmse = error.count > 0;
-  const double rmse = error.rmse().value_or(0);
-  row.emplace_back("samples", error.count);
-  row.emplace_back("rmse", number_if(has_rmse, rmse));
-  row.emplace_back("error_max", number_if(has_rmse, error.maximum));
-  row.emplace_back("error_radius", radius);
-
-  const bool has_psnr = rmse > radius;
-  row.emplace_back("peak", peak);
-  row.emplace_back("psnr", number_if(has_psnr, error.psnr(peak).value_or(0)));
+Figures figures_of(const SampleError& error, const SampleError& virtual_3, double radius) {
+  Figures figures{.samples = error.count, .rmse = error.rmse(), .error_radius = radius};
+  if (figures.rmse) figures.error_max = error.maximum;
+  const double rmse = figures.rmse.value_or(0);
+  if (!(rmse > radius)) return figures;
   // -ln(1 - x) <= x / (1 - x).
-  row.emplace_back("psnr_radius", number_if(has_psnr, 20 / std::numbers::ln10 * radius / (rmse - radius)));
-  row.emplace_back("psnr_why", has_psnr ? Value() : has_rmse ? "the RMSE is rounding" : "every ray is constant");
-
+  figures.psnr = {error.psnr(peak).value_or(0), 20 / std::numbers::ln10 * radius / (rmse - radius)};
   const double least = virtual_3.rmse().value_or(0);
-  const bool has_ratio = has_psnr && least > radius;
-  row.emplace_back("rmse_ratio", number_if(has_ratio, rmse / least));
-  row.emplace_back("rmse_ratio_radius", number_if(has_ratio, (rmse + least) * radius / (least * (least - radius))));
+  if (least > radius) figures.rmse_ratio = {rmse / least, (rmse + least) * radius / (least * (least - radius))};
+  return figures;
 }
 
-}  // namespace
+struct Record {
+  std::string_view reconstruction;
+  const Method* method;
+  std::string_view over;
+  std::pair<double, double> data_range;
+  RayCounts rays;
+  Figures figures;
+};
 
-std::vector<Column> virtual_samples_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  options.only({"kind"});
-  return {
-      {.name = "reconstruction",
-       .unit = "",
-       .description =
-           "what Cubic and the truth are: the cubic B-spline of the voxels (raw), or through them (prefiltered)",
-       .is_key = true},
-      {.name = "method",
-       .unit = "",
-       .description = "Lee's name; x1: samples a voxel apart, held until the next without virtual ones; VS: virtual "
-                      "Catmull-Rom samples, LinearVS: on the line; Linear: trilinear",
-       .is_key = true},
-      {.name = "over",
-       .unit = "",
-       .description = "the samples compared: all, or virtual, those between the x1 samples",
-       .is_key = true},
-      {.name = "truth", .unit = "", .description = "what the samples are compared with: Cubic x4 or Cubic x8"},
-      {.name = "data_min", .unit = "data", .description = "the field's smallest value, scaled to 0"},
-      {.name = "data_max", .unit = "data", .description = "the field's largest value, scaled to 1"},
-      {.name = "rays", .unit = "", .description = "rays drawn"},
-      {.name = "rays_constant", .unit = "", .description = "of these, rays whose raw spline is constant, left out"},
-      {.name = "samples", .unit = "", .description = "samples compared, of all other rays"},
-      {.name = "rmse",
-       .unit = "scalar",
-       .description = "root mean square error",
-       .is_key = false,
-       .radius = "error_radius"},
-      {.name = "error_max",
-       .unit = "scalar",
-       .description = "largest error",
-       .is_key = false,
-       .radius = "error_radius"},
-      {.name = "error_radius", .unit = "scalar", .description = "bound of the rounding error of rmse and error_max"},
-      {.name = "peak", .unit = "scalar", .description = "the peak of psnr: the range of the data, scaled"},
-      {.name = "psnr", .unit = "dB", .description = "20 log10(peak / rmse)", .is_key = false, .radius = "psnr_radius"},
-      {.name = "psnr_radius", .unit = "dB", .description = "bound of its rounding error"},
-      {.name = "psnr_why", .unit = "", .description = "why there is no psnr"},
-      {.name = "rmse_ratio",
-       .unit = "",
-       .description = "rmse over that of Cubic x1 + VS x3 in the same place",
-       .is_key = false,
-       .radius = "rmse_ratio_radius"},
-      {.name = "rmse_ratio_radius", .unit = "", .description = "bound of its rounding error"},
+/// Null where there is no such figure.
+CellOf<Figures> of_figure(std::optional<Bounded> Figures::*figure, double Bounded::*which) {
+  return [figure, which](const Figures& figures) {
+    const auto& bounded = figures.*figure;
+    return bounded ? std::optional((*bounded).*which) : std::nullopt;
   };
 }
 
-std::vector<Row> virtual_samples_rows(const Experiment& experiment, const JsonReader& /*options*/, const Field& field) {
+Columns<Figures> figure_columns() {
+  return {
+      {.name = "samples", .description = "samples compared, of all other rays", .cell = &Figures::samples},
+      {.name = "rmse",
+       .unit = "scalar",
+       .description = "root mean square error",
+       .radius = "error_radius",
+       .cell = &Figures::rmse},
+      {.name = "error_max",
+       .unit = "scalar",
+       .description = "largest error",
+       .radius = "error_radius",
+       .cell = &Figures::error_max},
+      {.name = "error_radius",
+       .unit = "scalar",
+       .description = "bound of the rounding error of rmse and error_max",
+       .cell = &Figures::error_radius},
+      {.name = "peak",
+       .unit = "scalar",
+       .description = "the peak of psnr: the range of the data, scaled",
+       .cell = [](const Figures& /*figures*/) { return peak; }},
+      {.name = "psnr",
+       .unit = "dB",
+       .description = "20 log10(peak / rmse)",
+       .radius = "psnr_radius",
+       .cell = of_figure(&Figures::psnr, &Bounded::value)},
+      {.name = "psnr_radius",
+       .unit = "dB",
+       .description = "bound of its rounding error",
+       .cell = of_figure(&Figures::psnr, &Bounded::radius)},
+      {.name = "psnr_why", .description = "why there is no psnr", .cell = &Figures::why_no_psnr},
+      {.name = "rmse_ratio",
+       .description = "rmse over that of Cubic x1 + VS x3 in the same place",
+       .radius = "rmse_ratio_radius",
+       .cell = of_figure(&Figures::rmse_ratio, &Bounded::value)},
+      {.name = "rmse_ratio_radius",
+       .description = "bound of its rounding error",
+       .cell = of_figure(&Figures::rmse_ratio, &Bounded::radius)},
+  };
+}
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns{
+      {.name = "reconstruction",
+       .description =
+           "what Cubic and the truth are: the cubic B-spline of the voxels (raw), or through them (prefiltered)",
+       .is_key = true,
+       .cell = &Record::reconstruction},
+      {.name = "method",
+       .description = "Lee's name; x1: samples a voxel apart, held until the next without virtual ones; VS: virtual "
+                      "Catmull-Rom samples, LinearVS: on the line; Linear: trilinear",
+       .is_key = true,
+       .cell = [](const Record& record) { return record.method->name; }},
+      {.name = "over",
+       .description = "the samples compared: all, or virtual, those between the x1 samples",
+       .is_key = true,
+       .cell = &Record::over},
+      {.name = "truth",
+       .description = "what the samples are compared with: Cubic x4 or Cubic x8",
+       .cell = [](const Record& record) { return record.method->rate == 4 ? "Cubic x4" : "Cubic x8"; }},
+      {.name = "data_min",
+       .unit = "data",
+       .description = "the field's smallest value, scaled to 0",
+       .cell = [](const Record& record) { return record.data_range.first; }},
+      {.name = "data_max",
+       .unit = "data",
+       .description = "the field's largest value, scaled to 1",
+       .cell = [](const Record& record) { return record.data_range.second; }},
+      {.name = "rays", .description = "rays drawn", .cell = [](const Record& record) { return record.rays.drawn; }},
+      {.name = "rays_constant",
+       .description = "of these, rays whose raw spline is constant, left out",
+       .cell = [](const Record& record) { return record.rays.constant; }},
+  };
+  append_part(columns, &Record::figures, figure_columns());
+  return columns;
+}
+
+std::vector<Record> records_of_field(const Experiment& experiment, const Options& /*options*/, const Field& field) {
   const Grid prefiltered = bspline_coefficients(field.grid);
   const std::vector<Reconstruction> reconstructions{{"bspline_raw", field.grid}, {"bspline_prefiltered", prefiltered}};
   const Findings findings = measure_rays(experiment, field, reconstructions);
 
-  std::vector<Row> rows;
+  std::vector<Record> records;
   for (std::size_t i = 0; i < reconstructions.size(); ++i) {
     const auto& [name, coefficients] = reconstructions[i];
     const double radius = error_radius * largest_magnitude(coefficients);
     const MethodErrors& errors = findings.errors[i];
     for (std::size_t k = 0; k < methods.size(); ++k)
-      for (const auto& [over, part] : {std::pair{"all", &Errors::all}, {"virtual", &Errors::between}}) {
-        Row& row = rows.emplace_back(Row{{"reconstruction", std::string(name)},
-                                         {"method", std::string(methods[k].name)},
-                                         {"over", over},
-                                         {"truth", methods[k].rate == 4 ? "Cubic x4" : "Cubic x8"},
-                                         {"data_min", field.data_range.first},
-                                         {"data_max", field.data_range.second},
-                                         {"rays", experiment.rays.count},
-                                         {"rays_constant", findings.rays_constant}});
-        add_figures(row, errors[k].*part, errors.front().*part, radius);
-      }
+      for (const auto& [over, part] : {std::pair{"all", &Errors::all}, {"virtual", &Errors::between}})
+        records.push_back({.reconstruction = name,
+                           .method = &methods[k],
+                           .over = over,
+                           .data_range = field.data_range,
+                           .rays = {experiment.rays.count, findings.rays_constant},
+                           .figures = figures_of(errors[k].*part, errors.front().*part, radius)});
   }
-  return rows;
+  return records;
 }
+
+}  // namespace
+
+extern const Measure virtual_samples;
+const Measure virtual_samples{
+    MeasureDefinition{.name = "virtual_samples",
+                      .summary = "RMSE, maximum and PSNR of virtual samples, and of fewer or trilinear ones",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_field = records_of_field}};
 
 }  // namespace raytruth

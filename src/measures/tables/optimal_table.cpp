@@ -1,6 +1,6 @@
 #include "experiments/measure.hpp"
-#include "measures/images/grid_view.hpp"
 #include "measures/images/pictures.hpp"
+#include "measures/images/studied_view.hpp"
 #include "raytruth/core/named.hpp"
 #include "raytruth/core/random.hpp"
 #include "raytruth/images/image_error.hpp"
@@ -20,6 +20,10 @@
 #include <functional>
 #include <numeric>
 #include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 namespace raytruth {
 
@@ -57,7 +61,7 @@ Pictures read_pictures(const Experiment& experiment, const JsonReader& json) {
   for (const JsonReader& item : json.at("cases").items()) {
     item.only({"field", "transfer"});
     pictures.fields.push_back(item.at("field").word(names_of(experiment.fields)));
-    pictures.transfers.push_back(item.at("transfer").word(names_of(experiment.transfers)));
+    pictures.transfers.push_back(read_transfer(experiment, item).name);
   }
   for (const JsonReader& size : json.at("sizes").items()) pictures.sizes.push_back(read_size(size));
   pictures.gain = json.at("gain").number(1, largest_gain);
@@ -66,6 +70,7 @@ Pictures read_pictures(const Experiment& experiment, const JsonReader& json) {
 
 Options read_options(const Experiment& experiment, const JsonReader& json) {
   json.only({"kind", "size", "camera", "sizes", "reference", "threshold", "slabs", "slab_table", "pictures"});
+  need_transfers(experiment);
   Options options{.size = read_image_size(json.at("size")), .camera = read_grid_view(json.at("camera"), options.size)};
   for (const JsonReader& size : json.at("sizes").items()) {
     options.sizes.push_back(read_size(size));
@@ -79,6 +84,64 @@ Options read_options(const Experiment& experiment, const JsonReader& json) {
   if (const auto pictures = json.find("pictures")) options.pictures = read_pictures(experiment, *pictures);
   return options;
 }
+
+// --- What the rows tell ---
+
+/// An image with a table of this size, and its errors; none over black.
+struct ImageOfSize {
+  std::size_t table_size;
+  std::optional<double> error;               ///< %, against the same steps without a table
+  std::optional<double> error_to_reference;  ///< %
+};
+
+/// What is known of a volume under a transfer function.
+struct CaseFacts {
+  std::size_t voxels;
+  double mean_opacity;
+  double bend;
+  double slab_error;                                 ///< %
+  std::optional<std::size_t> smallest;               ///< size from which on all errors are below the threshold
+  std::optional<std::size_t> smallest_to_reference;  ///< the same against the reference image
+  std::optional<double> error_without_table;         ///< %, against the certified image
+};
+
+/// A line of the image without a table, or of the error with one.
+struct CasePicture {
+  std::optional<std::size_t> table_size;
+  PictureLine line;
+};
+
+/// A model, and what is kept from it.
+struct Asked {
+  std::string_view model;
+  std::string_view held_out;
+};
+
+/// A prediction of a case.
+struct Predicted {
+  std::string volume;
+  Asked asked;
+  double smallest;  ///< as the case has it
+  double predicted;
+  double octaves;
+};
+
+/// All of a model's predictions.
+struct Quality {
+  Asked asked;
+  std::size_t cases;
+  double rms_octaves;
+  double largest_octaves;
+  std::optional<double> skill;  ///< none where the model mean errs nowhere
+  double within_half_octave;    ///< %
+  double sufficient;            ///< %
+  std::optional<double> excess = {};
+};
+
+struct Record {
+  std::string transfer;  ///< empty: of all
+  std::variant<ImageOfSize, CaseFacts, CasePicture, Predicted, Quality> part;
+};
 
 // --- What a case is, and what is known of it ---
 
@@ -165,9 +228,10 @@ double slab_error(const Experiment& experiment, const Grid& grid, const Piecewis
 
 // --- Images of a case ---
 
-class CaseRows {
+/// Renders a case with tables of all sizes.
+class CaseStudy {
  public:
-  CaseRows(const Experiment& experiment, const Options& options, const Field& field, const NamedTransfer& transfer)
+  CaseStudy(const Experiment& experiment, const Options& options, const Field& field, const NamedTransfer& transfer)
       : experiment_(experiment), options_(options), field_(field), transfer_(transfer) {
     const Image exact = render("order1", {});
     const Image reference = render("order1", options.reference);
@@ -177,40 +241,34 @@ class CaseRows {
       const Image image = render("order1", size);
       errors.push_back(percent(image, exact));
       errors_to_reference.push_back(percent(image, reference));
-      Row& row = add("size");
-      row.insert(row.end(), {{"table_size", static_cast<std::int64_t>(size)},
-                             {"error", value(errors.back())},
-                             {"error_to_reference", value(errors_to_reference.back())}});
+      add(ImageOfSize{size, errors.back(), errors_to_reference.back()});
     }
-    Row& row = add("case");
-    row.insert(row.end(), {{"voxels", static_cast<std::int64_t>(field.grid.values.size())},
-                           {"mean_opacity", mean_opacity(transfer.transfer)},
-                           {"bend", bend_of(field.grid, transfer.transfer)},
-                           {"slab_error", 100 * slab_error(experiment, field.grid, transfer.transfer, options)},
-                           {"smallest", smallest(errors)},
-                           {"smallest_to_reference", smallest(errors_to_reference)},
-                           {"error_without_table", value(percent(exact, render("reference", {})))}});
+    add(CaseFacts{.voxels = field.grid.values.size(),
+                  .mean_opacity = mean_opacity(transfer.transfer),
+                  .bend = bend_of(field.grid, transfer.transfer),
+                  .slab_error = 100 * slab_error(experiment, field.grid, transfer.transfer, options),
+                  .smallest = smallest(errors),
+                  .smallest_to_reference = smallest(errors_to_reference),
+                  .error_without_table = percent(exact, render("reference", {}))});
     add_pictures(exact);
   }
 
-  std::vector<Row> rows;
+  std::vector<Record> records;
 
  private:
-  Row& add(std::string_view part) {
-    return rows.emplace_back(Row{{"transfer", transfer_.name}, {"part", std::string(part)}});
+  template <class Part>
+  void add(Part part) {
+    records.push_back({transfer_.name, std::move(part)});
   }
 
   void add_pictures(const Image& exact) {
     const Pictures& pictures = options_.pictures;
     for (std::size_t i = 0; i < pictures.fields.size(); ++i) {
       if (pictures.fields[i] != field_.name || pictures.transfers[i] != transfer_.name) continue;
-      const auto keys = [this](const Value& size) {
-        return Row{{"transfer", transfer_.name}, {"part", "picture"}, {"table_size", size}};
-      };
-      add_picture(rows, keys({}), color_lines(exact));
+      for (PictureLine& line : color_lines(exact)) add(CasePicture{{}, std::move(line)});
       for (const std::size_t size : pictures.sizes)
-        add_picture(rows, keys(static_cast<std::int64_t>(size)),
-                    error_lines(render("order1", size), exact, pictures.gain));
+        for (PictureLine& line : error_lines(render("order1", size), exact, pictures.gain))
+          add(CasePicture{size, std::move(line)});
     }
   }
 
@@ -229,13 +287,11 @@ class CaseRows {
     return relative ? std::optional(100 * *relative) : std::nullopt;
   }
 
-  static Value value(const std::optional<double>& number) { return number ? Value(*number) : Value(); }
-
   /// The size from which on all errors are below the threshold.
-  [[nodiscard]] Value smallest(const std::vector<std::optional<double>>& errors) const {
-    Value found;
+  [[nodiscard]] std::optional<std::size_t> smallest(const std::vector<std::optional<double>>& errors) const {
+    std::optional<std::size_t> found;
     for (std::size_t i = errors.size(); i-- > 0 && errors[i] && *errors[i] < options_.threshold;)
-      found = static_cast<std::int64_t>(options_.sizes[i]);
+      found = options_.sizes[i];
     return found;
   }
 
@@ -302,7 +358,7 @@ constexpr std::array models{
           }},
 };
 
-/// The cases whose table size is known; one in which nothing is visible, or no table suffices, is none.
+/// The cases of rows whose table size is known; one in which nothing is visible, or no table suffices, is none.
 std::vector<Case> cases_of(const std::vector<Row>& rows) {
   std::vector<Case> cases;
   for (const Row& row : rows) {
@@ -338,148 +394,258 @@ std::optional<double> predict(const Model& model, const std::vector<Case>& cases
   return model.fit(known)(asked);
 }
 
-/// The sum of squares of what predictions are off, in octaves.
-double sum_of_squares(const std::vector<double>& differences) {
-  return std::inner_product(differences.begin(), differences.end(), differences.begin(), 0.0);
+/// A model's predictions of all cases, and what they come to.
+class ModelStudy {
+ public:
+  ModelStudy(const Options& options, const std::vector<Case>& cases, const Model& model, const HeldOut& held_out)
+      : sizes_(options.sizes), asked_{model.name, held_out.name} {
+    for (const Case& item : cases)
+      if (const auto predicted = predict(model, cases, held_out, item)) add(item, *predicted);
+  }
+
+  [[nodiscard]] const std::vector<Record>& predictions() const { return predictions_; }
+
+  /// In octaves.
+  [[nodiscard]] double sum_of_squares() const {
+    return std::inner_product(octaves_.begin(), octaves_.end(), octaves_.begin(), 0.0);
+  }
+
+  /// `of_mean`: the model mean's sum of squares. There are predictions.
+  [[nodiscard]] Record quality(double of_mean) const {
+    const auto count = static_cast<double>(octaves_.size());
+    const double squares = sum_of_squares();
+    const auto largest = std::max_element(octaves_.begin(), octaves_.end(),
+                                          [](double a, double b) { return std::abs(a) < std::abs(b); });
+    Quality quality{.asked = asked_,
+                    .cases = octaves_.size(),
+                    .rms_octaves = std::sqrt(squares / count),
+                    .largest_octaves = std::abs(*largest),
+                    .skill = of_mean > 0 ? std::optional(1 - squares / of_mean) : std::nullopt,
+                    .within_half_octave = 100 * static_cast<double>(within_) / count,
+                    .sufficient = 100 * static_cast<double>(excesses_.size()) / count};
+    if (!excesses_.empty())
+      quality.excess = std::exp2(2 * std::accumulate(excesses_.begin(), excesses_.end(), 0.0) /
+                                 static_cast<double>(excesses_.size()));
+    return {{}, quality};
+  }
+
+ private:
+  /// The binary logarithm of the next size that is asked for.
+  [[nodiscard]] double rounded_up(double exponent) const {
+    const auto next = std::find_if(sizes_.begin(), sizes_.end(), [exponent](std::size_t size) {
+      return std::log2(static_cast<double>(size)) >= exponent - 1e-9;
+    });
+    return std::log2(static_cast<double>(next == sizes_.end() ? sizes_.back() : *next));
+  }
+
+  void add(const Case& item, double predicted) {
+    octaves_.push_back(predicted - item.smallest);
+    within_ += std::abs(octaves_.back()) <= 0.5 ? 1 : 0;
+    if (const double excess = rounded_up(predicted) - item.smallest; excess >= 0) excesses_.push_back(excess);
+    predictions_.push_back({item.transfer, Predicted{item.field, asked_, std::exp2(item.smallest), std::exp2(predicted),
+                                                     octaves_.back()}});
+  }
+
+  const std::vector<std::size_t>& sizes_;
+  Asked asked_;
+  std::vector<Record> predictions_;
+  std::vector<double> octaves_;   ///< of predicted over smallest
+  std::vector<double> excesses_;  ///< octaves, of those that suffice once rounded up
+  std::size_t within_ = 0;        ///< half an octave
+};
+
+// --- Columns ---
+
+/// The record's part, if it is of this type.
+template <class Part>
+const Part* part_of(const Record& record) {
+  return std::get_if<Part>(&record.part);
+}
+
+std::string_view part_name(const Record& record) {
+  constexpr std::array<std::string_view, 5> names{"size", "case", "picture", "prediction", "model"};
+  return names[record.part.index()];
+}
+
+std::optional<Value> table_size_of(const Record& record) {
+  if (const auto* const image = part_of<ImageOfSize>(record)) return value_of(image->table_size);
+  if (const auto* const picture = part_of<CasePicture>(record)) return value_of(picture->table_size);
+  return std::nullopt;
+}
+
+const Asked* asked_of(const Record& record) {
+  if (const auto* const predicted = part_of<Predicted>(record)) return &predicted->asked;
+  if (const auto* const quality = part_of<Quality>(record)) return &quality->asked;
+  return nullptr;
+}
+
+Columns<Asked> asked_columns() {
+  std::string list;
+  for (const Model& model : models)
+    list += fmt::format("{}{}: {}", list.empty() ? "" : "; ", model.name, model.description);
+  return {
+      {.name = "model", .description = list, .is_key = true, .cell = &Asked::model},
+      {.name = "held_out",
+       .description = "a model predicts a case from those of other volumes, or of other volumes under other transfer "
+                      "functions",
+       .is_key = true,
+       .cell = &Asked::held_out},
+  };
+}
+
+Columns<ImageOfSize> image_columns(const Options& options) {
+  return {
+      {.name = "error",
+       .unit = "%",
+       .description = "100 sum |I - I_r| / sum I_r (Danskin and Hanrahan 1992) against the same steps without a table; "
+                      "null over black",
+       .cell = &ImageOfSize::error},
+      {.name = "error_to_reference",
+       .unit = "%",
+       .description =
+           fmt::format("the same against the image of a table of {} entries, as published", options.reference),
+       .cell = &ImageOfSize::error_to_reference},
+  };
+}
+
+Columns<CaseFacts> case_columns(const Options& options) {
+  return {
+      {.name = "voxels", .description = "of the volume: its bytes, were each a byte", .cell = &CaseFacts::voxels},
+      {.name = "mean_opacity",
+       .description = "of a step, over all scalars (eq. 5.6.2)",
+       .cell = &CaseFacts::mean_opacity},
+      {.name = "bend",
+       .description =
+           "sum |jump of q'| p / integral q p ds: q the emission density summed over channels, p the density "
+           "of the volume's scalars, both at 256 scalars",
+       .cell = &CaseFacts::bend},
+      {.name = "slab_error",
+       .unit = "%",
+       .description = fmt::format("the same error of {} random slabs, a step long, read from a table of {} entries",
+                                  options.slabs, options.slab_table),
+       .cell = &CaseFacts::slab_error},
+      {.name = "smallest",
+       .description = fmt::format("the table size from which on the error stays below {} %; null: none asked for, or "
+                                  "nothing is visible",
+                                  options.threshold),
+       .cell = &CaseFacts::smallest},
+      {.name = "smallest_to_reference",
+       .description = "the same of error_to_reference",
+       .cell = &CaseFacts::smallest_to_reference},
+      {.name = "error_without_table",
+       .unit = "%",
+       .description = "of the same steps without a table against the certified image: what no table can mend",
+       .cell = &CaseFacts::error_without_table},
+  };
+}
+
+Columns<Predicted> prediction_columns() {
+  return {
+      written_here<Predicted>("smallest", &Predicted::smallest),
+      {.name = "predicted", .description = "table size", .cell = &Predicted::predicted},
+      {.name = "octaves", .description = "log2 of predicted over smallest", .cell = &Predicted::octaves},
+  };
+}
+
+Columns<Quality> quality_columns() {
+  return {
+      {.name = "cases", .description = "predicted", .cell = &Quality::cases},
+      {.name = "rms_octaves", .description = "root mean square of octaves", .cell = &Quality::rms_octaves},
+      {.name = "largest_octaves", .description = "largest magnitude of octaves", .cell = &Quality::largest_octaves},
+      {.name = "skill",
+       .description = "1 - the sum of their squares over that of the model mean: 1 predicts all, 0 no better than "
+                      "the mean of the other cases",
+       .cell = &Quality::skill},
+      {.name = "within_half_octave",
+       .unit = "%",
+       .description = "predictions that are no farther than a factor of sqrt 2 from the smallest",
+       .cell = &Quality::within_half_octave},
+      {.name = "sufficient",
+       .unit = "%",
+       .description = "predictions that, rounded up to the next size asked for, suffice",
+       .cell = &Quality::sufficient},
+      {.name = "excess",
+       .description = "how many times as many entries as needed these have, in the geometric mean",
+       .cell = [](const Quality& quality) { return cell_if(quality.excess.has_value(), quality.excess); }},
+  };
+}
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& options) {
+  Columns<Record> columns{
+      {.name = "transfer",
+       .description = "the transfer function",
+       .is_key = true,
+       .cell = [](const Record& record) { return cell_if(!record.transfer.empty(), record.transfer); }},
+      {.name = "part",
+       .description = "size: an image; case: a volume and a transfer function; prediction: of a case from others; "
+                      "model: all of a model's predictions; picture: the image without a table, or the error with one",
+       .is_key = true,
+       .cell = part_name},
+      {.name = "table_size",
+       .description = "entries along each axis of the table",
+       .is_key = true,
+       .cell = table_size_of},
+      {.name = "volume",
+       .description = "of which a size is predicted",
+       .is_key = true,
+       .cell = [](const Record& record) -> std::optional<Value> {
+         const auto* const predicted = part_of<Predicted>(record);
+         return predicted != nullptr ? std::optional<Value>(predicted->volume) : std::nullopt;
+       }},
+  };
+  append_part(columns, asked_of, asked_columns());
+  append_part(columns, part_of<ImageOfSize>, image_columns(options));
+  append_part(columns, part_of<CaseFacts>, case_columns(options));
+  append_part(columns, part_of<Predicted>, prediction_columns());
+  append_part(columns, part_of<Quality>, quality_columns());
+  append_part(
+      columns,
+      [](const Record& record) {
+        const auto* const picture = part_of<CasePicture>(record);
+        return picture != nullptr ? &picture->line : nullptr;
+      },
+      picture_columns());
+  return columns;
+}
+
+std::vector<Record> records_of_field(const Experiment& experiment, const Options& options, const Field& field) {
+  std::vector<Record> records;
+  for (const NamedTransfer& transfer : experiment.transfers) {
+    std::vector<Record> of_case = CaseStudy(experiment, options, field, transfer).records;
+    records.insert(records.end(), std::make_move_iterator(of_case.begin()), std::make_move_iterator(of_case.end()));
+  }
+  return records;
+}
+
+/// The predictions of all models, and then what each of them comes to.
+std::vector<Record> conclusions(const Experiment& /*experiment*/, const Options& options,
+                                const std::vector<Row>& rows_of_fields) {
+  const std::vector<Case> cases = cases_of(rows_of_fields);
+  std::vector<Record> records;
+  std::vector<Record> of_models;
+  for (const HeldOut& held_out : held_out_kinds) {
+    double of_mean = 0;
+    for (const Model& model : models) {
+      const ModelStudy study(options, cases, model, held_out);
+      if (study.predictions().empty()) continue;
+      if (model.name == models.front().name) of_mean = study.sum_of_squares();
+      records.insert(records.end(), study.predictions().begin(), study.predictions().end());
+      of_models.push_back(study.quality(of_mean));
+    }
+  }
+  records.insert(records.end(), std::make_move_iterator(of_models.begin()), std::make_move_iterator(of_models.end()));
+  return records;
 }
 
 }  // namespace
 
-std::vector<Column> optimal_table_columns(const Experiment& experiment, const JsonReader& options) {
-  need_transfers(experiment);
-  const Options asked = read_options(experiment, options);
-  std::string list;
-  for (const Model& model : models)
-    list += fmt::format("{}{}: {}", list.empty() ? "" : "; ", model.name, model.description);
-  std::vector<Column> columns{
-      {.name = "transfer", .unit = "", .description = "the transfer function", .is_key = true},
-      {.name = "part",
-       .unit = "",
-       .description =
-           "size: an image; case: a volume and a transfer function; prediction: of a case from others; model: "
-           "all of a model's predictions; picture: the image without a table, or the error with one",
-       .is_key = true},
-      {.name = "table_size", .unit = "", .description = "entries along each axis of the table", .is_key = true},
-      {.name = "volume", .unit = "", .description = "of which a size is predicted", .is_key = true},
-      {.name = "model", .unit = "", .description = list, .is_key = true},
-      {.name = "held_out",
-       .unit = "",
-       .description = "a model predicts a case from those of other volumes, or of other volumes under other transfer "
-                      "functions",
-       .is_key = true},
-      {.name = "error",
-       .unit = "%",
-       .description = "100 sum |I - I_r| / sum I_r (Danskin and Hanrahan 1992) against the same steps without a table; "
-                      "null over black"},
-      {.name = "error_to_reference",
-       .unit = "%",
-       .description =
-           fmt::format("the same against the image of a table of {} entries, as published", asked.reference)},
-      {.name = "voxels", .unit = "", .description = "of the volume: its bytes, were each a byte"},
-      {.name = "mean_opacity", .unit = "", .description = "of a step, over all scalars (eq. 5.6.2)"},
-      {.name = "bend",
-       .unit = "",
-       .description =
-           "sum |jump of q'| p / integral q p ds: q the emission density summed over channels, p the density "
-           "of the volume's scalars, both at 256 scalars"},
-      {.name = "slab_error",
-       .unit = "%",
-       .description = fmt::format("the same error of {} random slabs, a step long, read from a table of {} entries",
-                                  asked.slabs, asked.slab_table)},
-      {.name = "smallest",
-       .unit = "",
-       .description = fmt::format("the table size from which on the error stays below {} %; null: none asked for, or "
-                                  "nothing is visible",
-                                  asked.threshold)},
-      {.name = "smallest_to_reference", .unit = "", .description = "the same of error_to_reference"},
-      {.name = "error_without_table",
-       .unit = "%",
-       .description = "of the same steps without a table against the certified image: what no table can mend"},
-      {.name = "predicted", .unit = "", .description = "table size"},
-      {.name = "octaves", .unit = "", .description = "log2 of predicted over smallest"},
-      {.name = "cases", .unit = "", .description = "predicted"},
-      {.name = "rms_octaves", .unit = "", .description = "root mean square of octaves"},
-      {.name = "largest_octaves", .unit = "", .description = "largest magnitude of octaves"},
-      {.name = "skill",
-       .unit = "",
-       .description = "1 - the sum of their squares over that of the model mean: 1 predicts all, 0 no better than "
-                      "the mean of the other cases"},
-      {.name = "within_half_octave",
-       .unit = "%",
-       .description = "predictions that are no farther than a factor of sqrt 2 from the smallest"},
-      {.name = "sufficient",
-       .unit = "%",
-       .description = "predictions that, rounded up to the next size asked for, suffice"},
-      {.name = "excess",
-       .unit = "",
-       .description = "how many times as many entries as needed these have, in the geometric mean"},
-  };
-  append(columns, picture_columns());
-  return columns;
-}
-
-std::vector<Row> optimal_table_rows(const Experiment& experiment, const JsonReader& json, const Field& field) {
-  const Options options = read_options(experiment, json);
-  std::vector<Row> rows;
-  for (const NamedTransfer& transfer : experiment.transfers) {
-    std::vector<Row> of_case = CaseRows(experiment, options, field, transfer).rows;
-    rows.insert(rows.end(), std::make_move_iterator(of_case.begin()), std::make_move_iterator(of_case.end()));
-  }
-  return rows;
-}
-
-std::vector<Row> optimal_table_conclusions(const Experiment& experiment, const JsonReader& json,
-                                           const std::vector<Row>& rows_of_fields) {
-  const Options options = read_options(experiment, json);
-  const std::vector<Case> cases = cases_of(rows_of_fields);
-  const auto rounded_up = [&options](double exponent) {
-    const auto next = std::find_if(options.sizes.begin(), options.sizes.end(), [exponent](std::size_t size) {
-      return std::log2(static_cast<double>(size)) >= exponent - 1e-9;
-    });
-    return std::log2(static_cast<double>(next == options.sizes.end() ? options.sizes.back() : *next));
-  };
-  std::vector<Row> rows;
-  std::vector<Row> of_models;
-  for (const HeldOut& held_out : held_out_kinds) {
-    double of_mean = 0;
-    for (const Model& model : models) {
-      const Row keys{{"model", std::string(model.name)}, {"held_out", std::string(held_out.name)}};
-      std::vector<double> octaves;
-      std::vector<double> excesses;
-      std::size_t within = 0;
-      for (const Case& item : cases) {
-        const auto predicted = predict(model, cases, held_out, item);
-        if (!predicted) continue;
-        octaves.push_back(*predicted - item.smallest);
-        within += std::abs(octaves.back()) <= 0.5 ? 1 : 0;
-        if (const double excess = rounded_up(*predicted) - item.smallest; excess >= 0) excesses.push_back(excess);
-        Row& row = rows.emplace_back(Row{{"transfer", item.transfer}, {"part", "prediction"}, {"volume", item.field}});
-        row.insert(row.end(), keys.begin(), keys.end());
-        row.insert(row.end(), {{"smallest", std::exp2(item.smallest)},
-                               {"predicted", std::exp2(*predicted)},
-                               {"octaves", octaves.back()}});
-      }
-      if (octaves.empty()) continue;
-      const auto count = static_cast<double>(octaves.size());
-      const double squares = sum_of_squares(octaves);
-      if (model.name == models.front().name) of_mean = squares;
-      Row& row = of_models.emplace_back(Row{{"part", "model"}});
-      row.insert(row.end(), keys.begin(), keys.end());
-      const auto largest = std::max_element(octaves.begin(), octaves.end(),
-                                            [](double a, double b) { return std::abs(a) < std::abs(b); });
-      row.insert(row.end(), {{"cases", static_cast<std::int64_t>(octaves.size())},
-                             {"rms_octaves", std::sqrt(squares / count)},
-                             {"largest_octaves", std::abs(*largest)},
-                             {"skill", of_mean > 0 ? Value(1 - squares / of_mean) : Value()},
-                             {"within_half_octave", 100 * static_cast<double>(within) / count},
-                             {"sufficient", 100 * static_cast<double>(excesses.size()) / count}});
-      if (!excesses.empty())
-        row.emplace_back("excess", std::exp2(2 * std::accumulate(excesses.begin(), excesses.end(), 0.0) /
-                                             static_cast<double>(excesses.size())));
-    }
-  }
-  rows.insert(rows.end(), std::make_move_iterator(of_models.begin()), std::make_move_iterator(of_models.end()));
-  return rows;
-}
+extern const Measure optimal_table;
+const Measure optimal_table{
+    MeasureDefinition{.name = "optimal_table",
+                      .summary = "the smallest table that an image needs, and how well it is predicted",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_field = records_of_field,
+                      .conclusions = conclusions}};
 
 }  // namespace raytruth

@@ -3,15 +3,14 @@
 #include "raytruth/catalogue.hpp"
 #include "raytruth/core/named.hpp"
 #include "raytruth/documents/case_json.hpp"
+#include "raytruth/documents/field_document.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
-#include "raytruth/documents/volume_source.hpp"
 #include "raytruth/metrics/signal_error.hpp"
 #include "raytruth/reference/ray_integral.hpp"
 #include "raytruth/schemes/scheme_integral.hpp"
 #include "raytruth/signals/marschner_lobb.hpp"
 #include "raytruth/signals/tricubic.hpp"
 #include "raytruth/signals/trilinear.hpp"
-#include "raytruth/volume/files/read_volume.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -260,20 +259,18 @@ void CaseReader::read_tricubic(const JsonReader& json, Case& result, std::vector
 }
 
 const Grid& CaseReader::read_volume_of(const JsonReader& signal, std::vector<std::string>& warnings) {
-  const JsonReader volume = signal.at("volume");
-  if (volume.is_object()) {
-    if (const auto repair = signal.find("repair")) repair->refuse_value("a repair of a file only");
-    last_volume_.clear();
-    grid_ = read_inline_grid(volume);
-    return grid_;
-  }
-  const auto file = volume.blame_for([&] { return find_sourced_volume(signal, folders_); });
-  const std::string which = file.string() + (asks_for_repair(signal) ? " repaired" : "");
-  if (which == last_volume_) return grid_;
-  SourcedVolume read = read_sourced_volume(signal, folders_);
+  const JsonReader place = signal.at("volume");
+  const FieldDocument field = read_volume_member(signal, false);
+  std::string which;  // an inline grid is read again, which costs no more than telling whether it is another one
+  if (std::holds_alternative<GeneratedField>(field)) which = place.json().dump();
+  if (const auto* const file = std::get_if<VolumeFile>(&field))
+    which = place.blame_for([&] { return find_volume_file(*file, folders_); }).string() +
+            (file->is_repaired ? " repaired" : "");
+  if (!which.empty() && which == last_volume_) return grid_;
+  SourcedVolume read = make_volume(field, folders_);
   warnings.insert(warnings.end(), read.warnings.begin(), read.warnings.end());
   grid_ = std::move(read.grid);
-  last_volume_ = which;
+  last_volume_ = std::move(which);
   return grid_;
 }
 

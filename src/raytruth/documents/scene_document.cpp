@@ -3,27 +3,23 @@
 #include "raytruth/catalogue.hpp"
 #include "raytruth/core/named.hpp"
 #include "raytruth/documents/case_json.hpp"
+#include "raytruth/documents/field_document.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
 #include "raytruth/documents/transfer_files/transfer_file.hpp"
-#include "raytruth/documents/volume_source.hpp"
 #include "raytruth/reference/ray_integral.hpp"
-#include "raytruth/signals/marschner_lobb.hpp"
-#include "raytruth/signals/random_field.hpp"
 #include "raytruth/tables/table3.hpp"
-#include "raytruth/volume/files/find_volume.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string_view>
+#include <variant>
 
 namespace raytruth {
 
 namespace {
 
-constexpr std::int64_t largest_generated_size = 512;
 constexpr std::int64_t most_table_iterations = 4096;
 constexpr std::int64_t most_pixels = std::int64_t{1} << 28;
 
@@ -44,31 +40,16 @@ std::array<double, 3> read_place(const JsonReader& json) {
   return {vector[0], vector[1], vector[2]};
 }
 
-Grid read_generated(const JsonReader& json) {
-  if (json.at("kind").word({"random_field", "marschner_lobb"}) == "random_field") {
-    json.only({"kind", "size", "smoothing", "seed"});
-    const auto size = json.at("size").integer(1, largest_generated_size);
-    const auto smoothing = json.find("smoothing");
-    const auto seed = json.find("seed");
-    return random_field(
-        size, smoothing ? smoothing->number(0, static_cast<double>(size)) : 0,
-        static_cast<std::uint64_t>(seed ? seed->integer(0, std::numeric_limits<std::int64_t>::max()) : 1));
-  }
-  json.only({"kind", "samples"});
-  return sampled_marschner_lobb(json.at("samples").integer(2, largest_generated_size));
-}
-
 /// The voxels, and where they come from.
 Grid read_voxels(const JsonReader& json, const SceneOptions& options, SceneFile& result) {
   const JsonReader place = json.at("volume");
-  const auto repair = json.find("repair");
-  if (place.is_object()) {
-    if (repair) repair->refuse_value("a repair of a file only");
-    result.volume = place.find("kind") ? place.json() : nlohmann::ordered_json("inline");
-    return place.find("kind") ? read_generated(place) : read_inline_grid(place, true);
-  }
-  SourcedVolume read = place.blame_for([&] { return read_sourced_volume(json, options.folders); });
-  result.volume = read.file;
+  const FieldDocument field = read_volume_member(json, true);
+  if (const auto* const file = std::get_if<VolumeFile>(&field))
+    place.blame_for([&] { return find_volume_file(*file, options.folders); });  // absent: an error of this place
+  SourcedVolume read = make_volume(field, options.folders);
+  result.volume = std::holds_alternative<GeneratedField>(field) ? place.json()
+                  : read.file.empty()                           ? nlohmann::ordered_json("inline")
+                                                                : nlohmann::ordered_json(read.file);
   result.warnings = std::move(read.warnings);
   return std::move(read.grid);
 }

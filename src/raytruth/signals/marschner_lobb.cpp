@@ -20,8 +20,11 @@ double marschner_lobb(double x, double y, double z) {
   return (1 - std::sin(pi * z / 2) + alpha * (1 + ripple)) / (2 * (1 + alpha));
 }
 
-Grid sampled_marschner_lobb(std::int64_t samples) {
-  if (samples < 2 || samples > 2048) throw InputError(fmt::format("samples {}; 2 to 2048 is allowed", samples));
+void check(const SampledMarschnerLobb& field) { check_options(field); }
+
+Grid make_grid(const SampledMarschnerLobb& field) {
+  check(field);
+  const std::int64_t samples = field.samples;
   Grid grid{.size = {samples, samples, samples}, .spacing = {1, 1, 1}, .values = {}};
   grid.values.reserve(static_cast<std::size_t>(samples * samples * samples));
   const auto node = [samples](std::int64_t i) {

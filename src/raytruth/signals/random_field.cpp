@@ -1,9 +1,7 @@
 #include "raytruth/signals/random_field.hpp"
 
-#include "raytruth/core/error.hpp"
 #include "raytruth/core/random.hpp"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <cmath>
@@ -51,10 +49,15 @@ Grid convolve(const Grid& grid, const std::vector<double>& weights, std::size_t 
 
 }  // namespace
 
-Grid random_field(std::int64_t size, double smoothing, std::uint64_t seed) {
-  if (size < 1 || size > 2048) throw InputError(fmt::format("size {}; 1 to 2048 is allowed", size));
-  if (!(smoothing >= 0 && smoothing <= static_cast<double>(size)))
-    throw InputError(fmt::format("smoothing {}; 0 to {} voxels is allowed", smoothing, size));
+void check(const RandomField& field) {
+  check_options(field);
+  const auto size = static_cast<double>(field.size);
+  if (!(field.smoothing <= size)) throw FieldOptionError("smoothing", field.smoothing, 0.0, size);
+}
+
+Grid make_grid(const RandomField& field) {
+  check(field);
+  const auto& [size, smoothing, seed] = field;
   Grid grid{.size = {size, size, size}, .spacing = {1, 1, 1}, .values = {}};
   grid.values.resize(static_cast<std::size_t>(size * size * size));
   for (std::size_t i = 0; i < grid.values.size(); ++i)

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "raytruth/core/named.hpp"
+#include "raytruth/signals/fields/generated_fields.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace raytruth::catalogue {
@@ -15,11 +17,12 @@ inline constexpr std::array signals{
     Named{"analytic", "a test signal with a name: sines, Gaussians, a chirp, a step, a kink"},
 };
 
-/// Where voxels come from.
-inline constexpr std::array fields{
-    Named{"random_field", "white noise in [0, 1], or white noise smoothed by a Gaussian; 64^3, periodic, from a seed"},
-    Named{"marschner_lobb", "the Marschner-Lobb signal sampled at n^3 nodes"},
-    Named{"volume", "a file, NRRD or NIfTI, found by name"},
-};
+/// Where voxels come from: a generator, or a file.
+inline constexpr auto fields = [] {
+  std::array<Named, generated_field_kinds.size() + 1> kinds{};
+  std::copy(generated_field_kinds.begin(), generated_field_kinds.end(), kinds.begin());
+  kinds.back() = {"volume", "a file, NRRD or NIfTI, found by name"};
+  return kinds;
+}();
 
 }  // namespace raytruth::catalogue

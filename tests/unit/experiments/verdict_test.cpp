@@ -86,6 +86,38 @@ TEST(Claim, SentenceIsTestedOnAllRowsThatThereAre) {
   EXPECT_EQ(testing(R"("at_least": 0.03)").verdict, "contradicted");
 }
 
+TEST(Claim, IsAnsweredByOtherRowsWhereItsOwnAreAllRefused) {
+  const auto asking = [](const std::string& field) {
+    return judge_text(R"({"claim": "c", "stated": 0.2, "resolution": 0.1, "measured": "xi", "why": "spread",
+                          "row": {"scheme": "order1", "field": ")" +
+                      field + R"("}, "otherwise": {"field": "white", "scheme": "order1"}})");
+  };
+  const Verdict other = asking("bonsai");
+  EXPECT_EQ(other.verdict, "reproduced");
+  EXPECT_EQ(other.why, Value("all rows of bonsai are refused: these are of white; spread"));
+  EXPECT_EQ(asking("white").why, Value("spread"));
+  const Verdict sentence =
+      judge_text(R"({"claim": "c", "stated": "small", "rows": {"field": "bonsai"}, "otherwise": {"field": "white"},
+                     "test": {"column": "xi", "at_most": 0.1}})");
+  EXPECT_EQ(sentence.verdict, "contradicted");
+  // Rows that there are not at all are an error of the claim, which nothing else answers.
+  const Verdict none = judge_text(R"({"claim": "c", "stated": "small", "rows": {"field": "white", "xi": 7},
+                                      "otherwise": {"field": "white"}, "test": {"column": "xi", "at_most": 1}})");
+  EXPECT_EQ(none.verdict, "not comparable");
+}
+
+TEST(Check, IsOfOtherRowsWhereItsOwnAreAllRefused) {
+  const CheckOutcome outcome =
+      check_text(R"({"bound": "b", "rows": {"field": "bonsai"}, "otherwise": {"field": "white"},
+                                              "column": "xi", "at_most": 0.2})");
+  EXPECT_TRUE(outcome.holds);
+  EXPECT_EQ(outcome.why, Value("all rows of bonsai are refused: these are of white"));
+  EXPECT_EQ(check_text(R"({"bound": "b", "rows": {"measure": "signal_error"}, "otherwise": {"field": "white"},
+                           "column": "xi", "at_most": 0.2})")
+                .why,
+            Value());
+}
+
 TEST(Check, HoldsOnTheWorstRow) {
   const CheckOutcome outcome =
       check_text(R"({"bound": "b", "rows": {"scheme": ["order1", "order2"]}, "column": "xi", "at_most": 0.2})");

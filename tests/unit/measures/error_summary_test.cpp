@@ -20,8 +20,7 @@ RayErrors three_rays() {
 double number(const Row& row, std::string_view name) { return as_number(cell(row, name)).value_or(std::nan("")); }
 
 TEST(ErrorSummary, OfThreeRaysByHand) {
-  Row row;
-  add_errors(row, three_rays(), 2);
+  const Row row = row_of(error_summary_columns("", "a ray"), summary_of(three_rays(), 2));
   EXPECT_NEAR(number(row, "opacity_bias"), 2 * 1.0, 1e-15);
   EXPECT_NEAR(number(row, "opacity_rms"), 2 * std::sqrt(3.0), 1e-15);
   EXPECT_NEAR(number(row, "opacity_p50"), 2 * 2, 1e-15);
@@ -33,13 +32,11 @@ TEST(ErrorSummary, OfThreeRaysByHand) {
   EXPECT_EQ(number(row, "radius"), 2 * 3e-15);
 }
 
-TEST(ErrorSummary, FillsItsColumnsAndIsNullWithoutRays) {
-  Row row;
-  add_errors(row, {});
-  const auto columns = error_columns("", "a ray");
+TEST(ErrorSummary, IsNullWithoutRays) {
+  const auto columns = error_summary_columns("", "a ray");
+  const Row row = row_of(columns, summary_of({}));
   ASSERT_EQ(row.size(), columns.size());
   for (std::size_t i = 0; i < row.size(); ++i) {
-    EXPECT_EQ(row[i].first, columns[i].name);
     if (row[i].first != "radius") {
       EXPECT_EQ(row[i].second, Value()) << row[i].first;
       EXPECT_EQ(columns[i].radius, "radius");

@@ -36,7 +36,9 @@ Experiment experiment_of(std::int64_t rays) {
 
 std::vector<Row> rows_of(const Grid& grid, std::int64_t rays) {
   const Experiment experiment = experiment_of(rays);
-  return virtual_samples_rows(experiment, experiment.json, {.name = "test", .grid = grid, .data_range = {0, 1}});
+  const Measure& measure = measure_of(experiment.json);
+  return measure.ask(measure, experiment, experiment.json)
+      ->rows(experiment, {.name = "test", .grid = grid, .data_range = {0, 1}}, 0);
 }
 
 double number(const Row& row, std::string_view column) { return as_number(cell(row, column)).value_or(-1); }

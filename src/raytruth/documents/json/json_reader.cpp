@@ -254,7 +254,7 @@ std::vector<JsonReader> JsonReader::items(std::size_t least) const {
   return result;
 }
 
-void JsonReader::only(std::initializer_list<std::string_view> keys) const {
+void JsonReader::only(std::span<const std::string_view> keys) const {
   for (const auto& [key, member] : members())
     if (std::find(keys.begin(), keys.end(), key) == keys.end())
       member.refuse("an unknown key" + suggestion(closest_word(key, keys)),

@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -60,7 +61,8 @@ class JsonReader {
   std::vector<std::pair<std::string, JsonReader>> members() const;
   std::vector<JsonReader> items(std::size_t least = 1) const;
   /// Refuses what is not an object, and an object that has other keys than these.
-  void only(std::initializer_list<std::string_view> keys) const;
+  void only(std::initializer_list<std::string_view> keys) const { only(std::span(keys.begin(), keys.size())); }
+  void only(std::span<const std::string_view> keys) const;
 
   [[noreturn]] void refuse(std::string_view found, std::string_view allowed) const;
   /// Refuses what stands here.

@@ -3,16 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <system_error>
 
 #include "raytruth/volume/files/refuse.hpp"
+#include "raytruth/volume/files/stored_volume.hpp"
 
 namespace raytruth {
 namespace {
 
-constexpr std::array<std::string_view, 5> extensions{".nrrd", ".nhdr", ".nii", ".nii.gz", ".hdr"};
 constexpr std::string_view folder_of_mricron_data = "/usr/share/mricron/templates";
 
 void append(std::vector<std::filesystem::path>& folders, std::string_view separated) {
@@ -39,14 +38,14 @@ std::vector<std::filesystem::path> volume_folders(std::string_view data_option) 
 }
 
 std::filesystem::path find_volume(const std::string& name, const std::vector<std::filesystem::path>& folders) {
-  const bool has_extension = std::any_of(extensions.begin(), extensions.end(),
-                                         [&](std::string_view extension) { return name.ends_with(extension); });
+  const bool has_extension = std::any_of(volume_formats().begin(), volume_formats().end(),
+                                         [&](const VolumeFormat& format) { return name.ends_with(format.extension); });
   if ((has_extension || name.find('/') != std::string::npos) && is_there(name)) return name;
   std::vector<std::string> file_names;
   if (has_extension) {
     file_names.push_back(name);
   } else {
-    for (const auto extension : extensions) file_names.push_back(fmt::format("{}{}", name, extension));
+    for (const VolumeFormat& format : volume_formats()) file_names.push_back(name + std::string(format.extension));
   }
   for (const auto& folder : folders) {
     for (const auto& file_name : file_names) {

@@ -1,22 +1,37 @@
 #include "raytruth/volume/files/read_volume.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
+#include <vector>
 
 #include "raytruth/volume/files/refuse.hpp"
 #include "raytruth/volume/files/stored_volume.hpp"
 
 namespace raytruth {
 
+std::span<const VolumeFormat> volume_formats() {
+  static constexpr std::array formats{
+      VolumeFormat{".nrrd", read_nrrd_header}, VolumeFormat{".nhdr", read_nrrd_header},
+      VolumeFormat{".nii", read_nifti_header}, VolumeFormat{".nii.gz", read_nifti_header},
+      VolumeFormat{".hdr", read_nifti_header},
+  };
+  return formats;
+}
+
 Volume read_volume(const std::filesystem::path& file) {
   const auto file_name = file.filename().string();
-  if (file_name.ends_with(".nrrd") || file_name.ends_with(".nhdr")) return read_voxels(read_nrrd_header(file));
-  if (file_name.ends_with(".nii") || file_name.ends_with(".nii.gz") || file_name.ends_with(".hdr")) {
-    return read_voxels(read_nifti_header(file));
+  std::vector<std::string_view> known;
+  for (const VolumeFormat& format : volume_formats()) {
+    if (file_name.ends_with(format.extension)) return read_voxels(format.read_header(file));
+    known.push_back(format.extension);
   }
-  refuse(file, "the name does not tell the format", ".nrrd, .nhdr, .nii, .nii.gz and .hdr are allowed");
+  const std::string_view last = known.back();
+  known.pop_back();
+  refuse(file, "the name does not tell the format", fmt::format("{} and {} are allowed", fmt::join(known, ", "), last));
 }
 
 void repair_first_byte(Volume& volume, unsigned char first_byte) {

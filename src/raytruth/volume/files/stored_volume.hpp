@@ -24,6 +24,15 @@ struct StoredVolume {
   std::vector<Piece> pieces;
 };
 
+/// A file format: a row of `volume_formats()`.
+struct VolumeFormat {
+  std::string_view extension;
+  StoredVolume (*read_header)(const std::filesystem::path& file);
+};
+
+/// Every format, by its extension, in the order in which names without one are tried (read_volume.cpp names them).
+[[nodiscard]] std::span<const VolumeFormat> volume_formats();
+
 /// The header of an NRRD file, understood by Teem. Throws InputError.
 [[nodiscard]] StoredVolume read_nrrd_header(const std::filesystem::path& file);
 

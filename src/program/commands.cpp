@@ -1,0 +1,28 @@
+#include "program/command.hpp"
+
+#include <array>
+
+namespace raytruth {
+
+extern const Command compare_command;
+extern const Command diff_command;
+extern const Command eval_command;
+extern const Command info_command;
+extern const Command ledger_command;
+extern const Command list_command;
+extern const Command plot_command;
+extern const Command render_command;
+extern const Command run_command;
+extern const Command score_command;
+extern const Command table_command;
+extern const Command vectors_command;
+
+std::span<const Command* const> commands() {
+  static constexpr std::array list{
+      &run_command,  &list_command, &eval_command, &render_command,  &compare_command, &table_command,
+      &plot_command, &diff_command, &info_command, &vectors_command, &score_command,   &ledger_command,
+  };
+  return list;
+}
+
+}  // namespace raytruth
