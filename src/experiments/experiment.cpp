@@ -222,6 +222,37 @@ std::vector<Check> read_checks(const JsonReader& json, const RowNames& names) {
   return checks;
 }
 
+void need_schemes(const Experiment& experiment) {
+  if (experiment.schemes.empty()) experiment.json.refuse("no schemes", "a member \"schemes\"");
+}
+
+void need_signal_schemes(const Experiment& experiment) {
+  const auto names = catalogue::scheme_names();
+  for (const JsonReader& scheme : experiment.json.at("schemes").items()) scheme.word(names);
+}
+
+void need_usable_samplings(const Experiment& experiment, const JsonReader& measure) {
+  for (const Sampling& sampling : experiment.samplings)
+    for (const std::string& scheme : experiment.schemes)
+      catalogue::visit_scheme(scheme, [&]<class S>() {
+        const Samples<double> samples{.positions = {}, .values = {}, .step = sampling.step};
+        const std::string_view why = refusal<S>(samples);
+        if (!why.empty()) measure.refuse(fmt::format("{} with {} samples", scheme, sampling.kind), why);
+      });
+}
+
+void need_transfers(const Experiment& experiment) {
+  if (experiment.transfers.empty()) experiment.json.refuse("no transfer functions", "a member \"transfer_functions\"");
+}
+
+/// Refuses an experiment that lacks what a measure needs; `place` is where the experiment asks for it.
+void refuse_lacks(const Needs& needs, const Experiment& experiment, const JsonReader& place) {
+  if (needs.schemes || needs.signal_schemes) need_schemes(experiment);
+  if (needs.signal_schemes) need_signal_schemes(experiment);
+  if (needs.usable_samplings) need_usable_samplings(experiment, place);
+  if (needs.transfers) need_transfers(experiment);
+}
+
 bool has_gl_measure(const Json& document) {
   const auto kinds = words_in(document, "measures", "kind");
   return std::any_of(measures().begin(), measures().end(), [&kinds](const Measure* measure) {
@@ -312,6 +343,7 @@ Experiment read_experiment(const std::string& path, std::string_view profile, st
   for (const JsonReader& measure : measure_items) {
     const Measure& found = measure_of(measure);
     add_unique(names.measures, measure.at("kind"), std::string(found.name));
+    refuse_lacks(found.needs, experiment, measure);
     experiment.measures.push_back(found.ask(found, experiment, measure));
   }
 
@@ -320,30 +352,6 @@ Experiment read_experiment(const std::string& path, std::string_view profile, st
   experiment.checks = read_checks(json.at("checks"), names);
   if (const auto plot = json.find("plot")) check_plot(*plot, names);
   return experiment;
-}
-
-void need_schemes(const Experiment& experiment) {
-  if (experiment.schemes.empty()) experiment.json.refuse("no schemes", "a member \"schemes\"");
-}
-
-void need_signal_schemes(const Experiment& experiment) {
-  need_schemes(experiment);
-  const auto names = catalogue::scheme_names();
-  for (const JsonReader& scheme : experiment.json.at("schemes").items()) scheme.word(names);
-}
-
-void need_usable_samplings(const Experiment& experiment, const JsonReader& measure) {
-  for (const Sampling& sampling : experiment.samplings)
-    for (const std::string& scheme : experiment.schemes)
-      catalogue::visit_scheme(scheme, [&]<class S>() {
-        const Samples<double> samples{.positions = {}, .values = {}, .step = sampling.step};
-        const std::string_view why = refusal<S>(samples);
-        if (!why.empty()) measure.refuse(fmt::format("{} with {} samples", scheme, sampling.kind), why);
-      });
-}
-
-void need_transfers(const Experiment& experiment) {
-  if (experiment.transfers.empty()) experiment.json.refuse("no transfer functions", "a member \"transfer_functions\"");
 }
 
 Field make_field(const FieldSource& source, const std::vector<std::filesystem::path>& folders) {

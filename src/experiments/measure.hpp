@@ -41,6 +41,14 @@ class AskedMeasure {
   const Measure& measure_;
 };
 
+/// What a measure needs an experiment to state; one that lacks it is refused.
+struct Needs {
+  bool schemes = false;
+  bool signal_schemes = false;    ///< schemes, all of which approximate the signal: those of catalogue::Schemes
+  bool usable_samplings = false;  ///< samplings that all of these can use
+  bool transfers = false;         ///< transfer functions
+};
+
 /// How a measure is written: by its options, read once into a type of its own, and by the records that become its rows.
 /// One of `of_field`, `of_experiment` and `of_block` is given.
 template <class Options, class Record>
@@ -48,6 +56,7 @@ struct MeasureDefinition {
   std::string_view name;
   std::string_view summary;
   bool uses_gl = false;
+  Needs needs = {};
   /// Refuses options that it does not know.
   Options (*read)(const Experiment&, const JsonReader&);
   Columns<Record> (*columns)(const Experiment&, const Options&);
@@ -66,13 +75,12 @@ struct MeasureDefinition {
 struct Measure {
   template <class Options, class Record>
   explicit Measure(const MeasureDefinition<Options, Record>& definition);
-  Measure(std::string_view its_name, std::string_view its_summary, bool of_fields, bool gl, auto its_ask)
-      : name(its_name), summary(its_summary), is_of_fields(of_fields), uses_gl(gl), ask(its_ask) {}
 
   std::string_view name;
   std::string_view summary;
   bool is_of_fields;  ///< whether it is asked of every field of the experiment; else once
   bool uses_gl;       ///< whether it runs shaders
+  Needs needs;
   /// Reads the options.
   std::function<std::shared_ptr<const AskedMeasure>(const Measure&, const Experiment&, const JsonReader& options)> ask;
 };
@@ -82,15 +90,6 @@ std::span<const Measure* const> measures();
 
 /// The measure that an item of an experiment's "measures" names. Throws InputError.
 const Measure& measure_of(const JsonReader& options);
-
-// What measures need of an experiment; each refuses one that lacks it.
-
-void need_schemes(const Experiment& experiment);
-/// Schemes, all of which approximate the signal: those of catalogue::Schemes.
-void need_signal_schemes(const Experiment& experiment);
-/// Samplings that all of these can use; `measure` is where a lack is reported.
-void need_usable_samplings(const Experiment& experiment, const JsonReader& measure);
-void need_transfers(const Experiment& experiment);
 
 // --- How a definition becomes a measure ---
 
@@ -146,6 +145,7 @@ Measure::Measure(const MeasureDefinition<Options, Record>& definition)
       summary(definition.summary),
       is_of_fields(definition.of_field != nullptr),
       uses_gl(definition.uses_gl),
+      needs(definition.needs),
       ask([definition](const Measure& measure, const Experiment& experiment, const JsonReader& options) {
         return std::make_shared<const detail::DefinedMeasure<Options, Record>>(measure, definition, experiment,
                                                                                definition.read(experiment, options));

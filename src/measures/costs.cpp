@@ -133,11 +133,12 @@ std::vector<Record> records(const Experiment& /*experiment*/, const Options& opt
 
 }  // namespace
 
-extern const Measure costs;
-const Measure costs{MeasureDefinition{.name = "costs",
-                                      .summary = "ratios of times that the benchmarks' reports hold, each of one run",
-                                      .read = read_options,
-                                      .columns = columns,
-                                      .of_experiment = records}};
+extern const Measure costs_measure;
+const Measure costs_measure{
+    MeasureDefinition{.name = "costs",
+                      .summary = "ratios of times that the benchmarks' reports hold, each of one run",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_experiment = records}};
 
 }  // namespace raytruth

@@ -20,6 +20,7 @@ namespace {
 struct ListOptions {
   std::string kind;  ///< empty: all
   bool json = false;
+  bool schema = false;
 };
 
 using Json = nlohmann::ordered_json;
@@ -57,6 +58,51 @@ Json experiments_json() {
   return list;
 }
 
+Json words_json(const std::vector<std::string_view>& words) { return {{"enum", words}}; }
+
+/// The names of the measures for which `is_asked` holds.
+template <class IsAsked>
+Json measures_json(const IsAsked& is_asked) {
+  std::vector<std::string_view> names;
+  for (const Measure* measure : measures())
+    if (is_asked(*measure)) names.push_back(measure->name);
+  return words_json(names);
+}
+
+/// What experiments/schemas/names.json holds: a JSON Schema of the names that the other schemas refer to.
+Json schema_of_names() {
+  const auto files = [](std::string_view folder, const std::vector<std::string_view>& names) {
+    Json list = Json::array();
+    for (const std::string_view name : names) list.push_back({{"$ref", fmt::format("{}/{}.json", folder, name)}});
+    return Json{{"oneOf", list}};
+  };
+  return {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+          {"$id", "names.json"},
+          {"title", "The names that the program knows, as `raytruth list --schema` writes them"},
+          {"$defs",
+           {{"scheme", words_json(names_of(catalogue::integral_schemes()))},
+            {"signal_scheme", words_json(catalogue::scheme_names())},
+            {"shading", words_json(names_of(catalogue::shadings()))},
+            {"highlight", words_json(names_of(catalogue::highlights()))},
+            {"table_builder", words_json(names_of(catalogue::table_builders()))},
+            {"second_order_builder", words_json(names_of(catalogue::second_order_builders))},
+            {"generated_field", files("fields", names_of(generated_field_kinds))},
+            {"measure", files("measures", names_of(measures()))},
+            {"measure_name", measures_json([](const Measure& /*measure*/) { return true; })},
+            {"measure_of_fields", measures_json([](const Measure& measure) { return measure.is_of_fields; })},
+            {"measure_of_signals", measures_json([](const Measure& measure) { return measure.needs.signal_schemes; })},
+            {"measure_of_schemes", measures_json([](const Measure& measure) { return measure.needs.schemes; })},
+            {"measure_of_transfers", measures_json([](const Measure& measure) { return measure.needs.transfers; })}}}};
+}
+
+/// The builders of tables over two scalars, over three, and of psi.
+Json tables_json() {
+  Json list = entries_json(catalogue::table_builders());
+  for (const Json& row : entries_json(catalogue::second_order_builders)) list.push_back(row);
+  list.push_back({{"name", catalogue::psi_builder.name}, {"summary", catalogue::psi_builder.summary}});
+  return list;
+}
+
 Json list_of(const std::string& kind) {
   if (kind == "signals") return entries_json(catalogue::signals);
   if (kind == "fields") return entries_json(catalogue::fields);
@@ -65,7 +111,7 @@ Json list_of(const std::string& kind) {
   if (kind == "schemes") return schemes_json();
   if (kind == "measures") return entries_json(measures());
   if (kind == "shadings") return entries_json(catalogue::shadings());
-  if (kind == "tables") return entries_json(catalogue::table_builders());
+  if (kind == "tables") return tables_json();
   if (kind == "experiments") return experiments_json();
   return Json::array();
 }
@@ -93,6 +139,10 @@ const std::vector<std::string>& listed_kinds() {
 }
 
 int list_ingredients(const ListOptions& options) {
+  if (options.schema) {
+    print(schema_of_names().dump(2) + "\n");
+    return 0;
+  }
   if (options.json) {
     Json all = Json::object();
     for (const std::string& kind : listed_kinds()) all[kind] = list_of(kind);
@@ -108,6 +158,7 @@ std::function<int()> describe(CommandOptions& add) {
   const auto options = std::make_shared<ListOptions>();
   add.optional_operand("kind", options->kind, listed_kinds(), "Of what (default: everything)");
   add.flag("--json", options->json, "As JSON");
+  add.flag("--schema", options->schema, "Write the names as experiments/schemas/names.json has them");
   return [options] { return list_ingredients(*options); };
 }
 

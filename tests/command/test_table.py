@@ -31,7 +31,7 @@ PSI = {"builder": "partial_pre_integration", "size": 16}
 OPACITY = 1 - math.exp(-2)
 SLAB = [OPACITY, 0.5 * OPACITY, 0.25 * OPACITY, OPACITY]
 
-SCHEMAS = [json.loads((SOURCE / f"experiments/schemas/{name}.json").read_text()) for name in ("table", "case")]
+SCHEMAS = [json.loads((SOURCE / f"experiments/schemas/{name}.json").read_text()) for name in ("table", "case", "names")]
 
 
 def schema_accepts(case):
@@ -128,8 +128,9 @@ class Files(TableTest):
             self.assertLess(fine, coarse / 4)
 
     def test_every_builder_of_the_catalogue(self):
-        names = [entry["name"] for entry in self.json_of("list", "tables", "--json")]
-        self.assertEqual(SCHEMAS[0]["$defs"]["builder"]["enum"], names)
+        listed = [entry["name"] for entry in self.json_of("list", "tables", "--json")]
+        names = SCHEMAS[2]["$defs"]["table_builder"]["enum"]
+        self.assertEqual(names + SCHEMAS[2]["$defs"]["second_order_builder"]["enum"] + ["partial_pre_integration"], listed)
         for name in names:
             self.make(changed(CASE, "/builder", name))
 

@@ -21,3 +21,4 @@ run(${CMAKE_COMMAND}
     -D CMAKE_CXX_FLAGS=${FLAGS})
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/consumer)
+run(${WORK}/build/documents_consumer)

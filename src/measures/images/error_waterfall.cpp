@@ -57,7 +57,6 @@ struct Options {
 
 Options read_options(const Experiment& experiment, const JsonReader& json) {
   json.only({"kind", "size", "renderer", "entries", "views", "gain"});
-  need_transfers(experiment);
   Options options;
   const auto size = read_image_size(json.at("size"));
   const JsonReader renderer = json.at("renderer");
@@ -342,10 +341,11 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure error_waterfall;
-const Measure error_waterfall{MeasureDefinition{
+extern const Measure error_waterfall_measure;
+const Measure error_waterfall_measure{MeasureDefinition{
     .name = "error_waterfall",
     .summary = "what each stage of a renderer adds to an image's error, and what their interaction does",
+    .needs = {.transfers = true},
     .read = read_options,
     .columns = columns,
     .of_field = records_of_field}};

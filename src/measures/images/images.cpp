@@ -129,7 +129,6 @@ std::vector<std::string> read_variants(const JsonReader& json, std::vector<View>
 
 Options read_options(const Experiment& experiment, const JsonReader& json) {
   json.only({"kind", "size", "views", "variants", "against", "baselines", "banding_window", "pictures"});
-  need_transfers(experiment);
   Options options;
   const auto size = read_image_size(json.at("size"));
   for (const JsonReader& item : json.at("views").items())
@@ -642,10 +641,11 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure images;
-const Measure images{
+extern const Measure images_measure;
+const Measure images_measure{
     MeasureDefinition{.name = "images",
                       .summary = "views of volumes in many ways, against the certified image and each other",
+                      .needs = {.transfers = true},
                       .read = read_options,
                       .columns = columns,
                       .of_field = records_of_field}};

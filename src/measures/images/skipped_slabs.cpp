@@ -4,9 +4,7 @@
 #include "raytruth/schemes/samples.hpp"
 #include "raytruth/schemes/virtual_samples.hpp"
 #include "raytruth/signals/cell_walk.hpp"
-#include "raytruth/signals/field_kind.hpp"
-#include "raytruth/signals/tricubic.hpp"
-#include "raytruth/signals/trilinear.hpp"
+#include "raytruth/signals/ray_field.hpp"
 #include "raytruth/skipping/block_refinement.hpp"
 
 #include <tbb/parallel_for.h>
@@ -14,6 +12,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <variant>
 #include <vector>
 
 namespace raytruth {
@@ -22,25 +21,13 @@ namespace {
 
 constexpr int slabs_per_interval = 4;
 
-/// The samples of the field along a ray; positions in smallest spacings.
-template <int Degree, class Trace>
-Samples<double> samples_of(const Trace& trace, double length_unit, double step) {
-  Chain<Degree> chain;
-  trace(chain);
-  Samples<double> samples;
-  sample_constant(chain, step / length_unit, samples);
-  for (auto& position : samples.positions) position = position * length_unit;
-  samples.step = step;
-  return samples;
-}
-
 class Counter {
  public:
   explicit Counter(const Scene& scene)
       : scene_(scene),
         view_(scene.camera, scene.grid.spacing),
-        coefficients_(scene.field == FieldKind::bspline_prefiltered ? bspline_coefficients(scene.grid) : Grid{}),
-        grid_(scene.field == FieldKind::bspline_prefiltered ? coefficients_ : scene.grid),
+        field_(ray_field(scene.grid, scene.field)),
+        grid_(std::visit([](const auto& field) -> const Grid& { return field.grid(); }, field_)),
         clear_(scene.transfer, scene.emission),
         blocks_(grid_, clear_, scene.empty_space->block,
                 block_refinement(scene.field, scene.step, scene.empty_space->bounds)),
@@ -68,13 +55,19 @@ class Counter {
     return static_cast<std::size_t>((k * blocks_.count()[1] + j) * blocks_.count()[0] + i);
   }
 
+  /// Positions in smallest spacings.
   [[nodiscard]] Samples<double> samples_along(const PixelRay& pixel) const {
-    if (scene_.field == FieldKind::trilinear)
-      return samples_of<3>([&](Chain<3>& chain) { trace_trilinear(grid_, pixel.ray, chain); }, pixel.length_unit,
-                           *scene_.step);
-    const auto kernel = scene_.field == FieldKind::catmull_rom ? CubicKernel::catmull_rom : CubicKernel::bspline;
-    return samples_of<9>([&](Chain<9>& chain) { trace_tricubic(grid_, kernel, pixel.ray, chain); }, pixel.length_unit,
-                         *scene_.step);
+    Samples<double> samples;
+    std::visit(
+        [&]<class Field>(const Field& field) {
+          Chain<Field::degree> chain;
+          field.trace(pixel.ray, chain);
+          sample_constant(chain, *scene_.step / pixel.length_unit, samples);
+        },
+        field_);
+    for (auto& position : samples.positions) position = position * pixel.length_unit;
+    samples.step = *scene_.step;
+    return samples;
   }
 
   void count(const PixelRay& pixel) {
@@ -118,7 +111,7 @@ class Counter {
 
   const Scene& scene_;
   CameraView view_;
-  Grid coefficients_;
+  RayField field_;
   const Grid& grid_;
   ClearScalars clear_;
   OccupiedBlocks blocks_;

@@ -21,10 +21,9 @@ struct Options {
   std::int64_t intervals = 0;  ///< equal ones along a ray
 };
 
-Options read_options(const Experiment& experiment, const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "intervals"});
   const Options options{.intervals = json.at("intervals").integer(1, most_intervals)};
-  need_schemes(experiment);
   return options;
 }
 
@@ -93,10 +92,11 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
 
 }  // namespace
 
-extern const Measure conformance;
-const Measure conformance{
+extern const Measure conformance_measure;
+const Measure conformance_measure{
     MeasureDefinition{.name = "conformance",
                       .summary = "digits that a scheme's answers to the conformance vectors have right",
+                      .needs = {.schemes = true},
                       .read = read_options,
                       .columns = columns,
                       .of_experiment = records}};

@@ -15,10 +15,8 @@ namespace {
 
 struct Options {};
 
-Options read_options(const Experiment& experiment, const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind"});
-  need_schemes(experiment);
-  need_transfers(experiment);
   return {};
 }
 
@@ -149,10 +147,11 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure integral_orders;
-const Measure integral_orders{
+extern const Measure integral_orders_measure;
+const Measure integral_orders_measure{
     MeasureDefinition{.name = "integral_orders",
                       .summary = "fitted orders of colour and opacity, refined inside cells and at constant steps",
+                      .needs = {.schemes = true, .transfers = true},
                       .read = read_options,
                       .columns = columns,
                       .of_field = records_of_field}};

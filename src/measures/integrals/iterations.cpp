@@ -24,14 +24,13 @@ struct Options {
   std::vector<std::int64_t> counts;  ///< ascending
 };
 
-Options read_options(const Experiment& experiment, const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "signal", "counts"});
   Options options{json.at("signal").word({"order1", "order2"}), {}};
   for (const JsonReader& count : json.at("counts").items()) {
     const std::int64_t least = options.counts.empty() ? 1 : options.counts.back() + 1;
     options.counts.push_back(count.integer(least, most_iterations));
   }
-  need_transfers(experiment);
   return options;
 }
 
@@ -178,10 +177,11 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure iterations;
-const Measure iterations{
+extern const Measure iterations_measure;
+const Measure iterations_measure{
     MeasureDefinition{.name = "iterations",
                       .summary = "errors of slabs that are summed up in N iterations, in steps of an 8-bit frame",
+                      .needs = {.transfers = true},
                       .read = read_options,
                       .columns = columns,
                       .of_field = records_of_field}};

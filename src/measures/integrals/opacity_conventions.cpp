@@ -180,8 +180,8 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure opacity_conventions;
-const Measure opacity_conventions{
+extern const Measure opacity_conventions_measure;
+const Measure opacity_conventions_measure{
     MeasureDefinition{.name = "opacity_conventions",
                       .summary = "what it costs to take a table of one convention of opacity for another",
                       .read = read_options,

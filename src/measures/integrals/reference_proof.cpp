@@ -146,8 +146,8 @@ std::vector<Record> records_of_block(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure reference_proof;
-const Measure reference_proof{
+extern const Measure reference_proof_measure;
+const Measure reference_proof_measure{
     MeasureDefinition{.name = "reference_proof",
                       .summary = "the certified reference against Arb: not one violation of a radius",
                       .read = read_options,

@@ -16,10 +16,8 @@ namespace {
 
 struct Options {};
 
-Options read_options(const Experiment& experiment, const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind"});
-  need_schemes(experiment);
-  need_transfers(experiment);
   return {};
 }
 
@@ -238,10 +236,11 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure work_precision;
-const Measure work_precision{
+extern const Measure work_precision_measure;
+const Measure work_precision_measure{
     MeasureDefinition{.name = "work_precision",
                       .summary = "errors of colour and opacity by their causes, against what a scheme reads and does",
+                      .needs = {.schemes = true, .transfers = true},
                       .read = read_options,
                       .columns = columns,
                       .of_field = records_of_field}};

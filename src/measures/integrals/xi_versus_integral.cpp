@@ -20,11 +20,8 @@ namespace {
 
 struct Options {};
 
-Options read_options(const Experiment& experiment, const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind"});
-  need_signal_schemes(experiment);
-  need_usable_samplings(experiment, json);
-  need_transfers(experiment);
   return {};
 }
 
@@ -200,10 +197,11 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure xi_versus_integral;
-const Measure xi_versus_integral{
+extern const Measure xi_versus_integral_measure;
+const Measure xi_versus_integral_measure{
     MeasureDefinition{.name = "xi_versus_integral",
                       .summary = "rank correlation of xi and the errors of colour and opacity",
+                      .needs = {.signal_schemes = true, .usable_samplings = true, .transfers = true},
                       .read = read_options,
                       .columns = columns,
                       .of_field = records_of_field}};

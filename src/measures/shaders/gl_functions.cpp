@@ -121,8 +121,8 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
 
 }  // namespace
 
-extern const Measure gl_functions;
-const Measure gl_functions{
+extern const Measure gl_functions_measure;
+const Measure gl_functions_measure{
     MeasureDefinition{.name = "gl_functions",
                       .summary = "local functions in GLSL, binary32, binary64 and 50 digits, each against the next",
                       .uses_gl = true,

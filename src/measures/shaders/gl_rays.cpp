@@ -96,7 +96,6 @@ void add(Budget& budget, const MarchedRay& ray, const TwinValues<float>& shader)
 const Sampled& method_of(const IntegralScheme& scheme) { return std::get<Sampled>(scheme.method); }
 
 void need_sampled_schemes(const Experiment& experiment) {
-  need_schemes(experiment);
   std::vector<std::string_view> names;
   for (const IntegralScheme& scheme : catalogue::integral_schemes())
     if (std::holds_alternative<Sampled>(scheme.method)) names.push_back(scheme.name);
@@ -115,11 +114,8 @@ void need_steps_of_virtual_samples(const Experiment& experiment) {
 
 struct Options {};
 
-Options read_options(const Experiment& experiment, const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind"});
-  need_sampled_schemes(experiment);
-  need_steps_of_virtual_samples(experiment);
-  need_transfers(experiment);
   return {};
 }
 
@@ -190,11 +186,12 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure gl_rays;
-const Measure gl_rays{
+extern const Measure gl_rays_measure;
+const Measure gl_rays_measure{
     MeasureDefinition{.name = "gl_rays",
                       .summary = "errors of rays in a shader: of the method, and of each arithmetic down to GLSL",
                       .uses_gl = true,
+                      .needs = {.schemes = true, .transfers = true},
                       .read = read_options,
                       .columns = columns,
                       .of_field = records_of_field}};

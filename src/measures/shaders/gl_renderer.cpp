@@ -268,8 +268,8 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure gl_renderer;
-const Measure gl_renderer{
+extern const Measure gl_renderer_measure;
+const Measure gl_renderer_measure{
     MeasureDefinition{.name = "gl_renderer",
                       .summary = "images of a hand-written renderer in GLSL, of the CPU, and certified ones",
                       .uses_gl = true,

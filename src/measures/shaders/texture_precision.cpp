@@ -356,8 +356,8 @@ std::vector<Record> volume_records(const Experiment& experiment, const VolumeOpt
 
 }  // namespace
 
-extern const Measure table_texture_precision;
-const Measure table_texture_precision{
+extern const Measure table_texture_precision_measure;
+const Measure table_texture_precision_measure{
     MeasureDefinition{.name = "table_texture_precision",
                       .summary = "look-ups of transfer functions and tables, by weights and formats of texels",
                       .uses_gl = true,
@@ -365,8 +365,8 @@ const Measure table_texture_precision{
                       .columns = table_columns,
                       .of_experiment = table_records}};
 
-extern const Measure volume_texture_precision;
-const Measure volume_texture_precision{
+extern const Measure volume_texture_precision_measure;
+const Measure volume_texture_precision_measure{
     MeasureDefinition{.name = "volume_texture_precision",
                       .summary = "look-ups of volumes, by weights and formats of texels",
                       .uses_gl = true,

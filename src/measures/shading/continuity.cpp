@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 namespace raytruth {
 
@@ -26,7 +28,7 @@ struct Options {
   std::int64_t draws = 0;
 };
 
-Options read_options(const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "angles", "shininess", "draws"});
   Options options;
   for (const JsonReader& angle : json.at("angles").items()) options.angles.push_back(angle.number(1, 170));
@@ -60,7 +62,7 @@ Vector3<double> turned(const Vector3<double>& from, double cosine, const Vector3
   return cosine * from + std::sqrt(1 - cosine * cosine) * across;
 }
 
-/// Diffuse and specular light.
+/// Diffuse and specular light, in this order.
 using Light = std::array<double, 2>;
 
 Light at_point(const Shading& shading, const SlabCosines& cosines, const Lighting& lighting, double x) {
@@ -121,33 +123,54 @@ Light jump_at(Place place, const Shading& shading, Lighting lighting, double ang
   return difference(moved(-aside), moved(aside));
 }
 
-}  // namespace
+/// The jumps of a method at a place over all draws.
+struct Record {
+  const Shading* shading = nullptr;
+  const char* place = nullptr;
+  double angle = 0;
+  std::int64_t draws = 0;
+  Light largest{};
+  Light mean{};
+};
 
-std::vector<Column> continuity_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_options(options);
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
   return {
-      {.name = "shading", .unit = "", .description = "the method; the highlight is the cone, clamped", .is_key = true},
+      {.name = "shading",
+       .description = "the method; the highlight is the cone, clamped",
+       .is_key = true,
+       .cell = [](const Record& record) { return record.shading->name; }},
       {.name = "place",
-       .unit = "",
        .description =
            "slab_border: light at a sample, as the end of one slab and as the beginning of the next; others: "
            "mean light of a slab, front_light: as N_f.L passes 0, back_light: N_b.L, front_half: as N_f.H "
            "passes the foot of the highlight, back_half: N_b.H",
-       .is_key = true},
-      {.name = "angle", .unit = "degree", .description = "between the normals of a slab", .is_key = true},
-      {.name = "draws", .unit = "", .description = "random normals, lights and half vectors"},
-      {.name = "diffuse_jump_max", .unit = "", .description = "largest jump of the diffuse light, K_d = 1"},
-      {.name = "diffuse_jump_mean", .unit = "", .description = "mean of it"},
-      {.name = "specular_jump_max", .unit = "", .description = "largest jump of the specular light, K_s = 1"},
-      {.name = "specular_jump_mean", .unit = "", .description = "mean of it"},
+       .is_key = true,
+       .cell = &Record::place},
+      {.name = "angle",
+       .unit = "degree",
+       .description = "between the normals of a slab",
+       .is_key = true,
+       .cell = &Record::angle},
+      {.name = "draws", .description = "random normals, lights and half vectors", .cell = &Record::draws},
+      {.name = "diffuse_jump_max",
+       .description = "largest jump of the diffuse light, K_d = 1",
+       .cell = [](const Record& record) { return record.largest[0]; }},
+      {.name = "diffuse_jump_mean",
+       .description = "mean of it",
+       .cell = [](const Record& record) { return record.mean[0]; }},
+      {.name = "specular_jump_max",
+       .description = "largest jump of the specular light, K_s = 1",
+       .cell = [](const Record& record) { return record.largest[1]; }},
+      {.name = "specular_jump_mean",
+       .description = "mean of it",
+       .cell = [](const Record& record) { return record.mean[1]; }},
   };
 }
 
-std::vector<Row> continuity_rows(const Experiment& experiment, const JsonReader& json, const Field& /*field*/) {
-  const Options options = read_options(json);
+std::vector<Record> records(const Experiment& experiment, const Options& options) {
   const Lighting lighting{
       .specular = 1, .shininess = options.shininess, .highlight = find_named(catalogue::highlights(), "cone")};
-  std::vector<Row> rows;
+  std::vector<Record> records;
   for (const Shading& shading : catalogue::shadings()) {
     if (!shading.refusal(lighting).empty()) continue;
     for (const auto& [place, name] : places)
@@ -156,24 +179,28 @@ std::vector<Row> continuity_rows(const Experiment& experiment, const JsonReader&
         tbb::parallel_for(std::size_t{0}, jumps.size(), [&, at = place](std::size_t i) {
           jumps[i] = jump_at(at, shading, lighting, angle, experiment.seed, i);
         });
-        Light largest{};
+        Record record{.shading = &shading, .place = name, .angle = angle, .draws = options.draws};
         Light sum{};
         for (const Light& jump : jumps)
           for (std::size_t term = 0; term < 2; ++term) {
-            largest[term] = std::max(largest[term], jump[term]);
+            record.largest[term] = std::max(record.largest[term], jump[term]);
             sum[term] += jump[term];
           }
-        rows.push_back({{"shading", shading.name},
-                        {"place", std::string(name)},
-                        {"angle", angle},
-                        {"draws", options.draws},
-                        {"diffuse_jump_max", largest[0]},
-                        {"diffuse_jump_mean", sum[0] / static_cast<double>(options.draws)},
-                        {"specular_jump_max", largest[1]},
-                        {"specular_jump_mean", sum[1] / static_cast<double>(options.draws)}});
+        for (std::size_t term = 0; term < 2; ++term) record.mean[term] = sum[term] / static_cast<double>(options.draws);
+        records.push_back(record);
       }
   }
-  return rows;
+  return records;
 }
+
+}  // namespace
+
+extern const Measure continuity_measure;
+const Measure continuity_measure{
+    MeasureDefinition{.name = "continuity",
+                      .summary = "jumps of the light across the borders of slabs and of the cases of their shading",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_experiment = records}};
 
 }  // namespace raytruth

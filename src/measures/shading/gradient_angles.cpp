@@ -16,6 +16,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace raytruth {
 
@@ -32,12 +37,16 @@ constexpr std::array counted_angles{60, 90};
 constexpr std::array<std::string_view, 4> curves{"mean_gradient", "linear_gradient", "quadratic_arc", "minimax_arc"};
 constexpr std::array error_percents{50, 95};
 
-std::vector<double> read_steps(const Experiment& experiment, const JsonReader& options) {
-  options.only({"kind", "steps"});
+struct Options {
   std::vector<double> steps;
-  for (const JsonReader& step : options.at("steps").items())
-    steps.push_back(step.number(smallest_step, experiment.rays.length));
-  return steps;
+};
+
+Options read_options(const Experiment& experiment, const JsonReader& json) {
+  json.only({"kind", "steps"});
+  Options options;
+  for (const JsonReader& step : json.at("steps").items())
+    options.steps.push_back(step.number(smallest_step, experiment.rays.length));
+  return options;
 }
 
 /// The consecutive samples of a ray.
@@ -98,89 +107,136 @@ constexpr std::array normal_errors{
                 }}};
 
 /// Over the slab; none where the curve is singular.
-Value largest_error(const NormalError& of, std::string_view curve_name, double angle) {
+std::optional<double> largest_error(const NormalError& of, std::string_view curve_name, double angle) {
   const double cosine = std::cos(angle * boost::math::constants::pi<double>() / 180);
   const NormalCurve& curve = *find_named(catalogue::normal_curves(), curve_name);
   const NormalCurve& reference = *find_named(catalogue::normal_curves(), "normalized_linear");
   const double error = largest_over_slab<double>([&](double s) {
                          return of.error(normal_at(curve, s, cosine), normal_at(reference, s, cosine));
                        }).second;
-  return std::isfinite(error) ? Value(error) : Value();
+  return std::isfinite(error) ? std::optional(error) : std::nullopt;
 }
 
-}  // namespace
+/// The angles of all pairs along the rays of a field whose gradients have a direction.
+struct PairAngles {
+  std::array<Proportion, counted_angles.size()> above;  ///< each of the counted angles
+  ShownQuantiles quantiles;
+  double largest = 0;
+  /// Over the slab, none where the curve is singular, of each of `normal_errors`, `curves` and `error_percents`.
+  std::array<std::array<std::array<std::optional<double>, error_percents.size()>, curves.size()>, normal_errors.size()>
+      errors;
+};
 
-std::vector<Column> gradient_angles_columns(const Experiment& experiment, const JsonReader& options) {
-  read_steps(experiment, options);
-  std::vector<Column> columns{
-      {.name = "gradient", .unit = "", .description = "how gradients are taken at voxels", .is_key = true},
-      {.name = "step", .unit = "voxel", .description = "distance of samples", .is_key = true},
-      {.name = "pairs", .unit = "", .description = "consecutive samples along rays"},
-      {.name = "excluded_share",
-       .unit = "",
-       .description = "share of pairs left out: a gradient of at most 1e-3 range/voxel has no direction"},
-  };
-  for (const int angle : counted_angles)
-    append(
-        columns,
-        {{.name = fmt::format("above_{}", angle),
-          .unit = "",
-          .description = fmt::format("share of the other pairs with an angle above {} degrees", angle)},
-         {.name = fmt::format("above_{}_low", angle), .unit = "", .description = "95 % interval, clustered by ray"},
-         {.name = fmt::format("above_{}_high", angle), .unit = "", .description = "95 % interval, clustered by ray"}});
-  append(columns, quantile_columns("angle", "degree", "angle between the normals of two consecutive samples"));
-  append(columns, {{.name = "angle_max", .unit = "degree", .description = "largest of these angles"}});
-  for (const NormalError& of : normal_errors)
-    for (const std::string_view curve : curves)
-      for (const int percent : error_percents)
+/// Of rays with one such pair at least.
+PairAngles pair_angles(const std::vector<RayAngles>& rays) {
+  PairAngles result;
+  for (std::size_t i = 0; i < counted_angles.size(); ++i) {
+    std::vector<Cluster> clusters;
+    for (const RayAngles& ray : rays)
+      clusters.push_back({.hits = std::count_if(ray.angles.begin(), ray.angles.end(),
+                                                [i](double of_pair) { return of_pair > counted_angles[i]; }),
+                          .trials = static_cast<std::int64_t>(ray.angles.size())});
+    result.above[i] = clustered_proportion(clusters);
+  }
+  std::vector<double> angles;
+  for (const RayAngles& ray : rays) angles.insert(angles.end(), ray.angles.begin(), ray.angles.end());
+  std::sort(angles.begin(), angles.end());
+  result.quantiles = shown_quantiles(angles);
+  result.largest = angles.back();
+  for (std::size_t error = 0; error < normal_errors.size(); ++error)
+    for (std::size_t curve = 0; curve < curves.size(); ++curve)
+      for (std::size_t i = 0; i < error_percents.size(); ++i)
+        result.errors[error][curve][i] =
+            largest_error(normal_errors[error], curves[curve], quantile(angles, error_percents[i] / 100.0));
+  return result;
+}
+
+/// The consecutive samples along the rays of a field.
+struct Record {
+  const GradientFilter* gradient = nullptr;
+  double step = 0;
+  std::int64_t pairs = 0;
+  std::int64_t excluded = 0;         ///< of the pairs
+  std::optional<PairAngles> angles;  ///< none where all pairs are excluded
+};
+
+Columns<PairAngles> angle_columns() {
+  Columns<PairAngles> columns;
+  for (std::size_t i = 0; i < counted_angles.size(); ++i) {
+    const std::string name = fmt::format("above_{}", counted_angles[i]);
+    append(columns,
+           {{.name = name,
+             .description = fmt::format("share of the other pairs with an angle above {} degrees", counted_angles[i]),
+             .cell = [i](const PairAngles& angles) { return angles.above[i].estimate; }},
+            {.name = name + "_low",
+             .description = "95 % interval, clustered by ray",
+             .cell = [i](const PairAngles& angles) { return angles.above[i].low; }},
+            {.name = name + "_high",
+             .description = "95 % interval, clustered by ray",
+             .cell = [i](const PairAngles& angles) { return angles.above[i].high; }}});
+  }
+  append_part(columns, &PairAngles::quantiles,
+              shown_quantile_columns("angle", "degree", "angle between the normals of two consecutive samples"));
+  columns.push_back(
+      {.name = "angle_max", .unit = "degree", .description = "largest of these angles", .cell = &PairAngles::largest});
+  for (std::size_t error = 0; error < normal_errors.size(); ++error)
+    for (std::size_t curve = 0; curve < curves.size(); ++curve)
+      for (std::size_t i = 0; i < error_percents.size(); ++i)
         columns.push_back(
-            {.name = fmt::format("{}_{}_p{}", curve, of.name, percent),
-             .unit = "",
-             .description = fmt::format("by {} at angle_p{}: {}; null: singular", curve, percent, of.description)});
+            {.name = fmt::format("{}_{}_p{}", curves[curve], normal_errors[error].name, error_percents[i]),
+             .description = fmt::format("by {} at angle_p{}: {}; null: singular", curves[curve], error_percents[i],
+                                        normal_errors[error].description),
+             .cell = [=](const PairAngles& angles) { return angles.errors[error][curve][i]; }});
   return columns;
 }
 
-std::vector<Row> gradient_angles_rows(const Experiment& experiment, const JsonReader& options, const Field& field) {
-  std::vector<Row> rows;
-  for (const double step : read_steps(experiment, options))
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns{
+      {.name = "gradient",
+       .description = "how gradients are taken at voxels",
+       .is_key = true,
+       .cell = [](const Record& record) { return record.gradient->name; }},
+      {.name = "step", .unit = "voxel", .description = "distance of samples", .is_key = true, .cell = &Record::step},
+      {.name = "pairs", .description = "consecutive samples along rays", .cell = &Record::pairs},
+      {.name = "excluded_share",
+       .description = "share of pairs left out: a gradient of at most 1e-3 range/voxel has no direction",
+       .cell =
+           [](const Record& record) {
+             return static_cast<double>(record.excluded) / static_cast<double>(record.pairs);
+           }},
+  };
+  append_part(columns, &Record::angles, angle_columns());
+  return columns;
+}
+
+std::vector<Record> records_of_field(const Experiment& experiment, const Options& options, const Field& field) {
+  std::vector<Record> records;
+  for (const double step : options.steps)
     for (const GradientFilter& filter : catalogue::gradient_filters()) {
       std::vector<RayAngles> rays(static_cast<std::size_t>(experiment.rays.count));
       tbb::parallel_for(std::size_t{0}, rays.size(), [&](std::size_t ray) {
         rays[ray] = angles_along(field.grid, filter,
                                  random_ray(field.grid, experiment.rays.length, experiment.seed, ray), step);
       });
-      std::vector<double> angles;
-      std::int64_t excluded = 0;
+      Record& record = records.emplace_back(
+          Record{.gradient = &filter, .step = step, .pairs = 0, .excluded = 0, .angles = std::nullopt});
       for (const RayAngles& ray : rays) {
-        angles.insert(angles.end(), ray.angles.begin(), ray.angles.end());
-        excluded += ray.excluded;
+        record.pairs += static_cast<std::int64_t>(ray.angles.size()) + ray.excluded;
+        record.excluded += ray.excluded;
       }
-      const auto pairs = static_cast<std::int64_t>(angles.size()) + excluded;
-      Row& row = rows.emplace_back(Row{{"gradient", std::string(filter.name)},
-                                       {"step", step},
-                                       {"pairs", pairs},
-                                       {"excluded_share", static_cast<double>(excluded) / static_cast<double>(pairs)}});
-      if (angles.empty()) continue;
-      for (const int angle : counted_angles) {
-        std::vector<Cluster> clusters;
-        for (const RayAngles& ray : rays)
-          clusters.push_back({.hits = std::count_if(ray.angles.begin(), ray.angles.end(),
-                                                    [angle](double of_pair) { return of_pair > angle; }),
-                              .trials = static_cast<std::int64_t>(ray.angles.size())});
-        const Proportion share = clustered_proportion(clusters);
-        const std::string name = fmt::format("above_{}", angle);
-        row.insert(row.end(), {{name, share.estimate}, {name + "_low", share.low}, {name + "_high", share.high}});
-      }
-      std::sort(angles.begin(), angles.end());
-      add_quantiles(row, "angle", angles);
-      row.emplace_back("angle_max", angles.back());
-      for (const NormalError& of : normal_errors)
-        for (const std::string_view curve : curves)
-          for (const int percent : error_percents)
-            row.emplace_back(fmt::format("{}_{}_p{}", curve, of.name, percent),
-                             largest_error(of, curve, quantile(angles, percent / 100.0)));
+      if (record.pairs > record.excluded) record.angles = pair_angles(rays);
     }
-  return rows;
+  return records;
 }
+
+}  // namespace
+
+extern const Measure gradient_angles_measure;
+const Measure gradient_angles_measure{
+    MeasureDefinition{.name = "gradient_angles",
+                      .summary = "angles between the normals of consecutive samples, by ways to take gradients",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_field = records_of_field}};
 
 }  // namespace raytruth

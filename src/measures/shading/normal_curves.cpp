@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 namespace raytruth {
 
@@ -19,7 +21,7 @@ struct Options {
   std::int64_t points = 0;
 };
 
-Options read_options(const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "angle", "lights", "shininess", "points"});
   Options options{.angle = json.at("angle").number(0, 179),
                   .lights = {},
@@ -31,66 +33,105 @@ Options read_options(const JsonReader& json) {
 
 double radians(double degrees) { return degrees * boost::math::constants::pi<double>() / 180; }
 
-}  // namespace
+/// The light at a point of a slab.
+struct Lit {
+  double diffuse = 0;
+  double specular = 0;
+};
 
-std::vector<Column> normal_curves_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_options(options);
+/// A point of a curve between two normals.
+struct Record {
+  double angle = 0;
+  double light = 0;  ///< degrees from the bisector
+  const NormalCurve* curve = nullptr;
+  double s = 0;
+  PlaneVector<double> normal{};
+  Lit lit;
+  Lit truth;  ///< by the normalised linear interpolation
+};
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
   return {
-      {.name = "angle", .unit = "degree", .description = "between the normals", .is_key = true},
+      {.name = "angle", .unit = "degree", .description = "between the normals", .is_key = true, .cell = &Record::angle},
       {.name = "light",
        .unit = "degree",
        .description = "from the bisector of the normals to the light, in their plane, positive towards the back; the "
                       "half vector is there too",
-       .is_key = true},
-      {.name = "curve", .unit = "", .description = "between the normals", .is_key = true},
-      {.name = "s", .unit = "", .description = "place in the slab, 0 at the front, 1 at the back", .is_key = true},
-      {.name = "norm", .unit = "", .description = "|N|"},
-      {.name = "direction", .unit = "degree", .description = "from the bisector to N, positive towards the back"},
-      {.name = "along_bisector", .unit = "", .description = "component of N"},
-      {.name = "along_chord", .unit = "", .description = "component of N, positive towards the back"},
-      {.name = "diffuse", .unit = "", .description = "max(0, N.L)"},
-      {.name = "diffuse_error", .unit = "", .description = "diffuse minus that of the normalised linear interpolation"},
-      {.name = "specular", .unit = "", .description = "max(0, N.H)^shininess"},
+       .is_key = true,
+       .cell = &Record::light},
+      {.name = "curve",
+       .description = "between the normals",
+       .is_key = true,
+       .cell = [](const Record& record) { return record.curve->name; }},
+      {.name = "s",
+       .description = "place in the slab, 0 at the front, 1 at the back",
+       .is_key = true,
+       .cell = &Record::s},
+      {.name = "norm", .description = "|N|", .cell = [](const Record& record) { return record.normal.norm(); }},
+      {.name = "direction",
+       .unit = "degree",
+       .description = "from the bisector to N, positive towards the back",
+       .cell =
+           [](const Record& record) { return record.normal.direction() * 180 / boost::math::constants::pi<double>(); }},
+      {.name = "along_bisector",
+       .description = "component of N",
+       .cell = [](const Record& record) { return record.normal.bisector; }},
+      {.name = "along_chord",
+       .description = "component of N, positive towards the back",
+       .cell = [](const Record& record) { return record.normal.chord; }},
+      {.name = "diffuse",
+       .description = "max(0, N.L)",
+       .cell = [](const Record& record) { return record.lit.diffuse; }},
+      {.name = "diffuse_error",
+       .description = "diffuse minus that of the normalised linear interpolation",
+       .cell = [](const Record& record) { return record.lit.diffuse - record.truth.diffuse; }},
+      {.name = "specular",
+       .description = "max(0, N.H)^shininess",
+       .cell = [](const Record& record) { return record.lit.specular; }},
       {.name = "specular_error",
-       .unit = "",
-       .description = "specular minus that of the normalised linear interpolation"},
-      {.name = "lit", .unit = "", .description = "(diffuse + specular) / 2"},
+       .description = "specular minus that of the normalised linear interpolation",
+       .cell = [](const Record& record) { return record.lit.specular - record.truth.specular; }},
+      {.name = "lit",
+       .description = "(diffuse + specular) / 2",
+       .cell = [](const Record& record) { return (record.lit.diffuse + record.lit.specular) / 2; }},
   };
 }
 
-std::vector<Row> normal_curves_rows(const Experiment& /*experiment*/, const JsonReader& json, const Field& /*field*/) {
-  const Options options = read_options(json);
+std::vector<Record> records(const Experiment& /*experiment*/, const Options& options) {
   const double cosine = std::cos(radians(options.angle));
   const NormalCurve& reference = *find_named(catalogue::normal_curves(), "normalized_linear");
   const Highlight& lobe = *find_named(catalogue::highlights(), "lobe");
-  std::vector<Row> rows;
+  std::vector<Record> records;
   for (const double light : options.lights) {
-    const auto along_light = [light](const PlaneVector<double>& normal) {
-      return std::max(0.0, normal.bisector * std::cos(radians(light)) + normal.chord * std::sin(radians(light)));
+    const auto lit = [&](const PlaneVector<double>& normal) -> Lit {
+      const double diffuse =
+          std::max(0.0, normal.bisector * std::cos(radians(light)) + normal.chord * std::sin(radians(light)));
+      return {diffuse, lobe.value(diffuse, options.shininess)};
     };
     for (const NormalCurve& curve : catalogue::normal_curves())
       for (std::int64_t i = 0; i < options.points; ++i) {
         const double s = static_cast<double>(i) / static_cast<double>(options.points - 1);
         const PlaneVector<double> normal = normal_at(curve, s, cosine);
-        const double diffuse = along_light(normal);
-        const double true_diffuse = along_light(normal_at(reference, s, cosine));
-        const double specular = lobe.value(diffuse, options.shininess);
-        rows.push_back({{"angle", options.angle},
-                        {"light", light},
-                        {"curve", std::string(curve.name)},
-                        {"s", s},
-                        {"norm", normal.norm()},
-                        {"direction", normal.direction() * 180 / boost::math::constants::pi<double>()},
-                        {"along_bisector", normal.bisector},
-                        {"along_chord", normal.chord},
-                        {"diffuse", diffuse},
-                        {"diffuse_error", diffuse - true_diffuse},
-                        {"specular", specular},
-                        {"specular_error", specular - lobe.value(true_diffuse, options.shininess)},
-                        {"lit", (diffuse + specular) / 2}});
+        records.push_back({.angle = options.angle,
+                           .light = light,
+                           .curve = &curve,
+                           .s = s,
+                           .normal = normal,
+                           .lit = lit(normal),
+                           .truth = lit(normal_at(reference, s, cosine))});
       }
   }
-  return rows;
+  return records;
 }
+
+}  // namespace
+
+extern const Measure normal_curves_measure;
+const Measure normal_curves_measure{
+    MeasureDefinition{.name = "normal_curves",
+                      .summary = "curves between two normals, point by point, and what light makes of them",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_experiment = records}};
 
 }  // namespace raytruth

@@ -12,8 +12,14 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace raytruth {
 
@@ -29,7 +35,7 @@ struct Options {
   std::int64_t slabs;
 };
 
-Options read_options(const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "angles", "shininess", "emission", "slabs"});
   Options options{{},
                   json.at("shininess").number(1, largest_shininess),
@@ -80,7 +86,7 @@ LitSlab draw(std::uint64_t seed, std::uint64_t index, double angle, double shini
   return result;
 }
 
-const std::array<std::string, 3> terms{"diffuse", "specular", "gooch"};
+constexpr std::array<std::string_view, 3> terms{"diffuse", "specular", "gooch"};
 
 /// Signed errors of one slab: [method][term], the channel whose magnitude is largest.
 using Errors = std::vector<std::array<double, 3>>;
@@ -118,7 +124,24 @@ bool is_lit(const Errors& errors, std::size_t term) {
                      [term](const auto& error) { return std::abs(error[term]) > smallest_error; });
 }
 
-void add_rows(const std::vector<Errors>& slabs, std::size_t term, const Row& keys, std::vector<Row>& rows) {
+/// The errors of a method over the slabs on which any method errs; nothing where there are none.
+struct Record {
+  std::string transfer;
+  double angle = 0;
+  std::string_view term;
+  const Shading* shading = nullptr;
+  std::size_t slabs = 0;
+  std::optional<double> mean = {};  ///< of the errors' magnitudes
+  std::optional<double> bias = {};
+  std::optional<double> p95 = {};      ///< of the errors' magnitudes
+  std::optional<double> largest = {};  ///< likewise
+  std::optional<double> share_best = {};
+  std::optional<double> share_better_than_mean = {};  ///< than mean_gradient
+  std::optional<double> share_worse_than_mean = {};
+};
+
+void add_records(const std::vector<Errors>& slabs, const std::string& transfer, double angle, std::size_t term,
+                 std::vector<Record>& records) {
   const auto shadings = studied_shadings();
   const auto is_measured = [&](std::size_t method) {
     return terms[term] != "gooch" || find_named(catalogue::normal_curves(), shadings[method]->name) != nullptr;
@@ -129,11 +152,11 @@ void add_rows(const std::vector<Errors>& slabs, std::size_t term, const Row& key
   std::vector<const Errors*> lit;
   for (const Errors& errors : slabs)
     if (is_lit(errors, term)) lit.push_back(&errors);
-  const auto share = [&](std::size_t count) {
-    return lit.empty() ? Value() : Value(static_cast<double>(count) / static_cast<double>(lit.size()));
-  };
   for (std::size_t method = 0; method < shadings.size(); ++method) {
     if (!is_measured(method)) continue;
+    Record& record = records.emplace_back(Record{
+        .transfer = transfer, .angle = angle, .term = terms[term], .shading = shadings[method], .slabs = lit.size()});
+    if (lit.empty()) continue;
     std::vector<double> magnitudes;
     double sum = 0;
     double signed_sum = 0;
@@ -155,64 +178,80 @@ void add_rows(const std::vector<Errors>& slabs, std::size_t term, const Row& key
       worse += magnitude > of_mean + smallest_error ? 1 : 0;
     }
     std::sort(magnitudes.begin(), magnitudes.end());
-    const auto of_slabs = [&](double value) { return lit.empty() ? Value() : Value(value); };
     const auto count = static_cast<double>(lit.size());
-    Row row = keys;
-    row.insert(row.end(), {{"term", terms[term]},
-                           {"shading", shadings[method]->name},
-                           {"slabs", static_cast<std::int64_t>(lit.size())},
-                           {"error_mean", of_slabs(sum / count)},
-                           {"error_signed_mean", of_slabs(signed_sum / count)},
-                           {"error_p95", lit.empty() ? Value() : Value(quantile(magnitudes, 0.95))},
-                           {"error_max", lit.empty() ? Value() : Value(magnitudes.back())},
-                           {"share_best", share(best)},
-                           {"share_better_than_mean", share(better)},
-                           {"share_worse_than_mean", share(worse)}});
-    rows.push_back(std::move(row));
+    record.mean = sum / count;
+    record.bias = signed_sum / count;
+    record.p95 = quantile(magnitudes, 0.95);
+    record.largest = magnitudes.back();
+    record.share_best = static_cast<double>(best) / count;
+    record.share_better_than_mean = static_cast<double>(better) / count;
+    record.share_worse_than_mean = static_cast<double>(worse) / count;
   }
+}
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  return {
+      {.name = "transfer_function",
+       .description = "transfer function of the slabs",
+       .is_key = true,
+       .cell = &Record::transfer},
+      {.name = "angle_degrees",
+       .unit = "degree",
+       .description = "full angle between the normals",
+       .is_key = true,
+       .cell = &Record::angle},
+      {.name = "term",
+       .description = "diffuse light, the cone's specular light, or Gooch's tones; coefficients are 1",
+       .is_key = true,
+       .cell = &Record::term},
+      {.name = "shading",
+       .description = "the method; negative cosines are clamped",
+       .is_key = true,
+       .cell = [](const Record& record) { return record.shading->name; }},
+      {.name = "slabs",
+       .description = "of those drawn, on which any method errs by more than 1e-12",
+       .cell = &Record::slabs},
+      {.name = "error_mean",
+       .description = "mean magnitude of the error of a slab's colour, in the channel where it is largest",
+       .cell = &Record::mean},
+      {.name = "error_signed_mean",
+       .description = "mean of the error, method - certified reference",
+       .cell = &Record::bias},
+      {.name = "error_p95", .description = "95th percentile of the magnitude", .cell = &Record::p95},
+      {.name = "error_max", .description = "its maximum", .cell = &Record::largest},
+      {.name = "share_best",
+       .description = "slabs on which no method's error is smaller by 1e-12",
+       .cell = &Record::share_best},
+      {.name = "share_better_than_mean",
+       .description = "slabs on which the error is smaller than mean_gradient's by 1e-12",
+       .cell = &Record::share_better_than_mean},
+      {.name = "share_worse_than_mean",
+       .description = "slabs on which it is larger by 1e-12",
+       .cell = &Record::share_worse_than_mean},
+  };
+}
+
+std::vector<Record> records(const Experiment& experiment, const Options& options) {
+  std::vector<Record> records;
+  for (const auto& [name, transfer] : transfers())
+    for (const double angle : options.angles) {
+      std::vector<Errors> slabs(static_cast<std::size_t>(options.slabs));
+      tbb::parallel_for(std::size_t{0}, slabs.size(), [&, &transfer = transfer](std::size_t i) {
+        slabs[i] = errors_of(draw(experiment.seed, i, angle, options.shininess), transfer, options.emission);
+      });
+      for (std::size_t term = 0; term < terms.size(); ++term) add_records(slabs, name, angle, term, records);
+    }
+  return records;
 }
 
 }  // namespace
 
-std::vector<Column> shading_integrals_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_options(options);
-  return {
-      {.name = "transfer_function", .unit = "", .description = "transfer function of the slabs", .is_key = true},
-      {.name = "angle_degrees", .unit = "degree", .description = "full angle between the normals", .is_key = true},
-      {.name = "term",
-       .unit = "",
-       .description = "diffuse light, the cone's specular light, or Gooch's tones; coefficients are 1",
-       .is_key = true},
-      {.name = "shading", .unit = "", .description = "the method; negative cosines are clamped", .is_key = true},
-      {.name = "slabs", .unit = "", .description = "of those drawn, on which any method errs by more than 1e-12"},
-      {.name = "error_mean",
-       .unit = "",
-       .description = "mean magnitude of the error of a slab's colour, in the channel where it is largest"},
-      {.name = "error_signed_mean", .unit = "", .description = "mean of the error, method - certified reference"},
-      {.name = "error_p95", .unit = "", .description = "95th percentile of the magnitude"},
-      {.name = "error_max", .unit = "", .description = "its maximum"},
-      {.name = "share_best", .unit = "", .description = "slabs on which no method's error is smaller by 1e-12"},
-      {.name = "share_better_than_mean",
-       .unit = "",
-       .description = "slabs on which the error is smaller than mean_gradient's by 1e-12"},
-      {.name = "share_worse_than_mean", .unit = "", .description = "slabs on which it is larger by 1e-12"},
-  };
-}
-
-std::vector<Row> shading_integrals_rows(const Experiment& experiment, const JsonReader& options,
-                                        const Field& /*field*/) {
-  const Options asked = read_options(options);
-  std::vector<Row> rows;
-  for (const auto& [name, transfer] : transfers())
-    for (const double angle : asked.angles) {
-      std::vector<Errors> slabs(static_cast<std::size_t>(asked.slabs));
-      tbb::parallel_for(std::size_t{0}, slabs.size(), [&, &transfer = transfer](std::size_t i) {
-        slabs[i] = errors_of(draw(experiment.seed, i, angle, asked.shininess), transfer, asked.emission);
-      });
-      for (std::size_t term = 0; term < terms.size(); ++term)
-        add_rows(slabs, term, {{"transfer_function", name}, {"angle_degrees", angle}}, rows);
-    }
-  return rows;
-}
+extern const Measure shading_integrals_measure;
+const Measure shading_integrals_measure{
+    MeasureDefinition{.name = "shading_integrals",
+                      .summary = "errors of the colour of whole slabs, and the share of slabs a method is best on",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_experiment = records}};
 
 }  // namespace raytruth

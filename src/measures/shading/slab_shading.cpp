@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace raytruth {
 
@@ -19,14 +23,13 @@ struct Options {
   std::vector<const Highlight*> highlights;
 };
 
-Options read_options(const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "angles", "shininess", "highlights"});
   Options options;
   for (const JsonReader& angle : json.at("angles").items()) options.angles.push_back(angle.number(0, largest_angle));
   for (const JsonReader& n : json.at("shininess").items())
     options.shininesses.push_back(n.number(1, largest_shininess));
-  std::vector<std::string_view> names;
-  for (const Highlight& highlight : catalogue::highlights()) names.push_back(highlight.name);
+  const std::vector<std::string_view> names = names_of(catalogue::highlights());
   for (const JsonReader& name : json.at("highlights").items())
     options.highlights.push_back(find_named(catalogue::highlights(), name.word(names)));
   return options;
@@ -65,8 +68,22 @@ std::vector<double> profile_of(const Shading& shading, const SlabCosines& cosine
   return term == Term::specular && other_sum > sum ? others : values;
 }
 
-/// One row per method.
-void add_rows(Term term, double angle, const Place& place, const Lighting& lighting, std::vector<Row>& rows) {
+/// The errors of a method along one slab.
+struct Record {
+  Term term = Term::diffuse;
+  std::optional<std::string_view> highlight;  ///< none: of diffuse light
+  std::optional<double> shininess;            ///< likewise
+  double angle = 0;
+  std::string light;
+  const Shading* shading = nullptr;
+  double largest = 0;  ///< of the errors' magnitudes
+  double mean = 0;     ///< likewise
+  double bias = 0;
+  double highest_truth = 0;
+};
+
+/// Those of every method under this light.
+void add_records(Term term, double angle, const Place& place, const Lighting& lighting, std::vector<Record>& records) {
   const bool is_diffuse = term == Term::diffuse;
   const SlabCosines cosines = cosines_of(studied_slab(angle), lighting);
   const auto truth = profile_of(*find_named(catalogue::shadings(), "normalized_linear"), cosines, lighting, term);
@@ -76,72 +93,95 @@ void add_rows(Term term, double angle, const Place& place, const Lighting& light
     if (is_diffuse) asked.highlight = find_named(catalogue::highlights(), "cone");
     if (!shading->refusal(asked).empty()) continue;
     const auto values = profile_of(*shading, cosines, asked, term);
-    double largest = 0;
-    double sum = 0;
-    double bias = 0;
-    double highest = 0;
+    Record record{.term = term,
+                  .highlight = std::nullopt,
+                  .shininess = std::nullopt,
+                  .angle = angle,
+                  .light = place.name,
+                  .shading = shading};
+    if (!is_diffuse) {
+      record.highlight = lighting.highlight->name;
+      record.shininess = lighting.shininess;
+    }
     for (std::size_t i = 0; i <= points; ++i) {
       const double error = values[i] - truth[i];
       const double weight = (i == 0 || i == points ? 0.5 : 1.0) / points;
-      largest = std::max(largest, std::abs(error));
-      highest = std::max(highest, std::abs(truth[i]));
-      sum += weight * std::abs(error);
-      bias += weight * error;
+      record.largest = std::max(record.largest, std::abs(error));
+      record.highest_truth = std::max(record.highest_truth, std::abs(truth[i]));
+      record.mean += weight * std::abs(error);
+      record.bias += weight * error;
     }
-    rows.push_back({{"term", is_diffuse ? "diffuse" : "specular"},
-                    {"highlight", is_diffuse ? Value() : Value(std::string(lighting.highlight->name))},
-                    {"shininess", is_diffuse ? Value() : Value(lighting.shininess)},
-                    {"angle_degrees", angle},
-                    {"light", place.name},
-                    {"shading", shading->name},
-                    {"error_max", largest},
-                    {"error_mean", sum},
-                    {"error_signed_mean", bias},
-                    {"truth_max", highest}});
+    records.push_back(record);
   }
 }
 
-}  // namespace
-
-std::vector<Column> slab_shading_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_options(options);
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
   return {
-      {.name = "term", .unit = "", .description = "diffuse or specular light, its coefficient 1", .is_key = true},
-      {.name = "highlight", .unit = "", .description = "of the method and of the reference", .is_key = true},
-      {.name = "shininess", .unit = "", .description = "of the highlight", .is_key = true},
-      {.name = "angle_degrees", .unit = "degree", .description = "full angle between the normals", .is_key = true},
+      {.name = "term",
+       .description = "diffuse or specular light, its coefficient 1",
+       .is_key = true,
+       .cell = [](const Record& record) { return record.term == Term::diffuse ? "diffuse" : "specular"; }},
+      {.name = "highlight",
+       .description = "of the method and of the reference",
+       .is_key = true,
+       .cell = &Record::highlight},
+      {.name = "shininess", .description = "of the highlight", .is_key = true, .cell = &Record::shininess},
+      {.name = "angle_degrees",
+       .unit = "degree",
+       .description = "full angle between the normals",
+       .is_key = true,
+       .cell = &Record::angle},
       {.name = "light",
-       .unit = "",
        .description =
            "where the light (specular: the half vector) is: on the bisector of the normals, on the front "
            "normal, 30 degrees beyond the back normal in their plane, 30 degrees out of it from the bisector",
-       .is_key = true},
-      {.name = "shading", .unit = "", .description = "the method; negative cosines are clamped", .is_key = true},
-      {.name = "error_max", .unit = "", .description = "largest magnitude of the error over 4097 points of the slab"},
-      {.name = "error_mean", .unit = "", .description = "mean magnitude of the error, by the trapezoid rule"},
-      {.name = "error_signed_mean", .unit = "", .description = "mean of the error, method - normalized_linear"},
-      {.name = "truth_max", .unit = "", .description = "largest light of the reference over the slab"},
+       .is_key = true,
+       .cell = &Record::light},
+      {.name = "shading",
+       .description = "the method; negative cosines are clamped",
+       .is_key = true,
+       .cell = [](const Record& record) { return record.shading->name; }},
+      {.name = "error_max",
+       .description = "largest magnitude of the error over 4097 points of the slab",
+       .cell = &Record::largest},
+      {.name = "error_mean",
+       .description = "mean magnitude of the error, by the trapezoid rule",
+       .cell = &Record::mean},
+      {.name = "error_signed_mean",
+       .description = "mean of the error, method - normalized_linear",
+       .cell = &Record::bias},
+      {.name = "truth_max",
+       .description = "largest light of the reference over the slab",
+       .cell = &Record::highest_truth},
   };
 }
 
-std::vector<Row> slab_shading_rows(const Experiment& /*experiment*/, const JsonReader& options,
-                                   const Field& /*field*/) {
-  const Options asked = read_options(options);
-  std::vector<Row> rows;
-  for (const double angle : asked.angles)
+std::vector<Record> records(const Experiment& /*experiment*/, const Options& options) {
+  std::vector<Record> records;
+  for (const double angle : options.angles)
     for (const Place& place : places(angle)) {
       Lighting lighting;
       lighting.light = place.direction;
       lighting.half = place.direction;
-      add_rows(Term::diffuse, angle, place, lighting, rows);
-      for (const Highlight* const highlight : asked.highlights)
-        for (const double shininess : asked.shininesses) {
+      add_records(Term::diffuse, angle, place, lighting, records);
+      for (const Highlight* const highlight : options.highlights)
+        for (const double shininess : options.shininesses) {
           lighting.highlight = highlight;
           lighting.shininess = shininess;
-          add_rows(Term::specular, angle, place, lighting, rows);
+          add_records(Term::specular, angle, place, lighting, records);
         }
     }
-  return rows;
+  return records;
 }
+
+}  // namespace
+
+extern const Measure slab_shading_measure;
+const Measure slab_shading_measure{
+    MeasureDefinition{.name = "slab_shading",
+                      .summary = "errors of the light along a slab, by methods, angles and places of the light",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_experiment = records}};
 
 }  // namespace raytruth

@@ -10,6 +10,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace raytruth {
 
@@ -20,7 +24,7 @@ struct Options {
   double shininess = 0;
 };
 
-Options read_options(const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "size", "shininess"});
   return {.size = json.at("size").integer(8, 512), .shininess = json.at("shininess").number(1, 1e6)};
 }
@@ -77,53 +81,77 @@ std::string gray_text(const Image& image, std::int64_t row) {
   return text;
 }
 
-}  // namespace
+/// A picture against that of the lobe, or a line of its pixels.
+struct Record {
+  bool is_bumpy = false;
+  const Highlight* highlight = nullptr;
+  double shininess = 0;
+  std::optional<ImageError> error = {};   ///< of the whole picture
+  std::optional<std::int64_t> line = {};  ///< 0 on top
+  std::string pixels = {};
+};
 
-std::vector<Column> spheres_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_options(options);
+Columns<ImageError> error_columns() {
   return {
-      {.name = "surface", .unit = "", .description = "smooth or bumpy sphere", .is_key = true},
-      {.name = "highlight", .unit = "", .description = "of its lighting", .is_key = true},
-      {.name = "shininess", .unit = "", .description = "of the highlight", .is_key = true},
-      {.name = "line",
-       .unit = "",
-       .description = "of the picture, 0 on top; null: the whole picture against that of the lobe",
-       .is_key = true},
-      {.name = "pixels", .unit = "", .description = "its pixels, 8-bit sRGB grays, two hexadecimal digits each"},
-      {.name = "image_error", .unit = "", .description = "sum |I - I_lobe| / sum I_lobe (Danskin and Hanrahan 1992)"},
-      {.name = "image_rmse", .unit = "", .description = "root mean square of I - I_lobe, linear light"},
-      {.name = "image_psnr", .unit = "dB", .description = "-20 log10 of it; the peak is 1"},
-      {.name = "image_maximum", .unit = "", .description = "largest |I - I_lobe|"},
+      {.name = "image_error",
+       .description = "sum |I - I_lobe| / sum I_lobe (Danskin and Hanrahan 1992)",
+       .cell = [](const ImageError& error) { return error.relative.value_or(0); }},
+      {.name = "image_rmse", .description = "root mean square of I - I_lobe, linear light", .cell = &ImageError::rmse},
+      {.name = "image_psnr", .unit = "dB", .description = "-20 log10 of it; the peak is 1", .cell = &ImageError::psnr},
+      {.name = "image_maximum", .description = "largest |I - I_lobe|", .cell = &ImageError::maximum},
   };
 }
 
-std::vector<Row> spheres_rows(const Experiment& /*experiment*/, const JsonReader& json, const Field& /*field*/) {
-  const Options options = read_options(json);
-  std::vector<Row> rows;
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns{
+      {.name = "surface",
+       .description = "smooth or bumpy sphere",
+       .is_key = true,
+       .cell = [](const Record& record) { return record.is_bumpy ? "bumpy" : "smooth"; }},
+      {.name = "highlight",
+       .description = "of its lighting",
+       .is_key = true,
+       .cell = [](const Record& record) { return record.highlight->name; }},
+      {.name = "shininess", .description = "of the highlight", .is_key = true, .cell = &Record::shininess},
+      {.name = "line",
+       .description = "of the picture, 0 on top; null: the whole picture against that of the lobe",
+       .is_key = true,
+       .cell = &Record::line},
+      {.name = "pixels",
+       .description = "its pixels, 8-bit sRGB grays, two hexadecimal digits each",
+       .cell = [](const Record& record) { return cell_if(record.line.has_value(), record.pixels); }},
+  };
+  append_part(columns, &Record::error, error_columns());
+  return columns;
+}
+
+std::vector<Record> records(const Experiment& /*experiment*/, const Options& options) {
+  std::vector<Record> records;
   for (const bool is_bumpy : {false, true}) {
     const Image lobe = sphere_image(options, is_bumpy, *find_named(catalogue::highlights(), "lobe"));
     for (const Highlight& highlight : catalogue::highlights()) {
       const Image image = sphere_image(options, is_bumpy, highlight);
-      const Row keys{{"surface", is_bumpy ? "bumpy" : "smooth"},
-                     {"highlight", std::string(highlight.name)},
-                     {"shininess", options.shininess}};
-      if (highlight.name != "lobe") {
-        const ImageError error = image_error(image, lobe);
-        Row& row = rows.emplace_back(keys);
-        row.insert(row.end(), {{"line", Value()},
-                               {"image_error", error.relative.value_or(0)},
-                               {"image_rmse", error.rmse},
-                               {"image_psnr", error.psnr ? Value(*error.psnr) : Value()},
-                               {"image_maximum", error.maximum}});
-      }
+      const Record of_picture{.is_bumpy = is_bumpy, .highlight = &highlight, .shininess = options.shininess};
+      if (highlight.name != "lobe") records.emplace_back(of_picture).error = image_error(image, lobe);
       if (std::find(pictured.begin(), pictured.end(), highlight.name) == pictured.end()) continue;
       for (std::int64_t line = 0; line < options.size; ++line) {
-        Row& row = rows.emplace_back(keys);
-        row.insert(row.end(), {{"line", line}, {"pixels", gray_text(image, line)}});
+        Record& record = records.emplace_back(of_picture);
+        record.line = line;
+        record.pixels = gray_text(image, line);
       }
     }
   }
-  return rows;
+  return records;
 }
+
+}  // namespace
+
+extern const Measure spheres_measure;
+const Measure spheres_measure{
+    MeasureDefinition{.name = "spheres",
+                      .summary = "pictures of a smooth and a bumpy sphere by several highlights, and their errors",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_experiment = records}};
 
 }  // namespace raytruth

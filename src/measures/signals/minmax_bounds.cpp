@@ -269,8 +269,8 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
 
 }  // namespace
 
-extern const Measure minmax_bounds;
-const Measure minmax_bounds{
+extern const Measure minmax_bounds_measure;
+const Measure minmax_bounds_measure{
     MeasureDefinition{.name = "minmax_bounds",
                       .summary = "how far virtual samples leave the range of their data and of the block they lie in",
                       .read = read_options,

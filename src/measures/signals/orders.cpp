@@ -20,9 +20,8 @@ namespace {
 
 struct Options {};
 
-Options read_options(const Experiment& experiment, const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind"});
-  need_signal_schemes(experiment);
   return {};
 }
 
@@ -137,10 +136,11 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure orders;
-const Measure orders{MeasureDefinition{
+extern const Measure orders_measure;
+const Measure orders_measure{MeasureDefinition{
     .name = "orders",
     .summary = "fitted orders of xi and xi_max, refined inside cells and at constant steps across them",
+    .needs = {.signal_schemes = true},
     .read = read_options,
     .columns = columns,
     .of_field = records_of_field}};

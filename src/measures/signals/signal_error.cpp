@@ -43,8 +43,6 @@ struct Options {
 
 Options read_options(const Experiment& experiment, const JsonReader& json) {
   json.only({"kind", "ratios", "printed"});
-  need_signal_schemes(experiment);
-  need_usable_samplings(experiment, json);
   const std::vector<std::string_view> schemes(experiment.schemes.begin(), experiment.schemes.end());
   Options options;
   if (const auto ratios = json.find("ratios"))
@@ -338,10 +336,11 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure signal_error;
-const Measure signal_error{MeasureDefinition{
+extern const Measure signal_error_measure;
+const Measure signal_error_measure{MeasureDefinition{
     .name = "signal_error",
     .summary = "xi and xi_max of every scheme along random rays: quantiles, and ratios between schemes",
+    .needs = {.signal_schemes = true, .usable_samplings = true},
     .read = read_options,
     .columns = columns,
     .of_field = records_of_field}};

@@ -111,11 +111,11 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure turning_points;
-const Measure turning_points{MeasureDefinition{.name = "turning_points",
-                                               .summary = "how often the cubic inside a cell turns twice",
-                                               .read = read_options,
-                                               .columns = columns,
-                                               .of_field = records_of_field}};
+extern const Measure turning_points_measure;
+const Measure turning_points_measure{MeasureDefinition{.name = "turning_points",
+                                                       .summary = "how often the cubic inside a cell turns twice",
+                                                       .read = read_options,
+                                                       .columns = columns,
+                                                       .of_field = records_of_field}};
 
 }  // namespace raytruth

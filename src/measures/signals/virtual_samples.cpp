@@ -330,8 +330,8 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 }  // namespace
 
-extern const Measure virtual_samples;
-const Measure virtual_samples{
+extern const Measure virtual_samples_measure;
+const Measure virtual_samples_measure{
     MeasureDefinition{.name = "virtual_samples",
                       .summary = "RMSE, maximum and PSNR of virtual samples, and of fewer or trilinear ones",
                       .read = read_options,

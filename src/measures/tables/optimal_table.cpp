@@ -70,7 +70,6 @@ Pictures read_pictures(const Experiment& experiment, const JsonReader& json) {
 
 Options read_options(const Experiment& experiment, const JsonReader& json) {
   json.only({"kind", "size", "camera", "sizes", "reference", "threshold", "slabs", "slab_table", "pictures"});
-  need_transfers(experiment);
   Options options{.size = read_image_size(json.at("size")), .camera = read_grid_view(json.at("camera"), options.size)};
   for (const JsonReader& size : json.at("sizes").items()) {
     options.sizes.push_back(read_size(size));
@@ -639,10 +638,11 @@ std::vector<Record> conclusions(const Experiment& /*experiment*/, const Options&
 
 }  // namespace
 
-extern const Measure optimal_table;
-const Measure optimal_table{
+extern const Measure optimal_table_measure;
+const Measure optimal_table_measure{
     MeasureDefinition{.name = "optimal_table",
                       .summary = "the smallest table that an image needs, and how well it is predicted",
+                      .needs = {.transfers = true},
                       .read = read_options,
                       .columns = columns,
                       .of_field = records_of_field,

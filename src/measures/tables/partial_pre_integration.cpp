@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 namespace raytruth {
 
@@ -24,7 +26,7 @@ struct Options {
   std::size_t slabs = 0;
 };
 
-Options read_options(const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "sizes", "slabs"});
   Options options{.sizes = {}, .slabs = static_cast<std::size_t>(json.at("slabs").integer(1, most_slabs))};
   for (const JsonReader& size : json.at("sizes").items())
@@ -57,64 +59,72 @@ std::vector<LinearOptics> draw_slabs(std::size_t count, std::uint64_t seed) {
   return slabs;
 }
 
-}  // namespace
+/// The errors of look-ups in a table of psi, over all slabs.
+struct Record {
+  std::size_t size = 0;
+  const char* look_up = nullptr;
+  std::size_t slabs = 0;
+  double color_max = 0;
+  double color_mean = 0;
+  double opacity_max = 0;
+  double radius = 0;
 
-std::vector<Column> partial_pre_integration_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_options(options);
+  [[nodiscard]] std::size_t bytes() const { return sizeof(float) * size * size; }
+};
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
   return {
-      {.name = "size", .unit = "", .description = "n, entries along each axis of the table", .is_key = true},
-      {.name = "look_up", .unit = "", .description = "of psi: nearest or bilinear", .is_key = true},
+      {.name = "size", .description = "n, entries along each axis of the table", .is_key = true, .cell = &Record::size},
+      {.name = "look_up", .description = "of psi: nearest or bilinear", .is_key = true, .cell = &Record::look_up},
       {.name = "slabs",
-       .unit = "",
-       .description = "with optics linear from front to back, depths D evenly distributed in D / (D + 1), up to 64"},
-      {.name = "bytes", .unit = "byte", .description = "of the table in binary32, one channel"},
+       .description = "with optics linear from front to back, depths D evenly distributed in D / (D + 1), up to 64",
+       .cell = &Record::slabs},
+      {.name = "bytes", .unit = "byte", .description = "of the table in binary32, one channel", .cell = &Record::bytes},
       {.name = "error_max",
-       .unit = "",
        .description = "largest error of the colour, all channels, against certified slabs",
-       .is_key = false,
-       .radius = "radius"},
-      {.name = "error_l1", .unit = "", .description = "mean magnitude of it", .is_key = false, .radius = "radius"},
+       .radius = "radius",
+       .cell = &Record::color_max},
+      {.name = "error_l1", .description = "mean magnitude of it", .radius = "radius", .cell = &Record::color_mean},
       {.name = "opacity_max",
-       .unit = "",
        .description = "largest error of the opacity, which has a closed form",
-       .is_key = false,
-       .radius = "radius"},
-      {.name = "radius", .unit = "", .description = "bound on the error of the errors: the reference's"},
+       .radius = "radius",
+       .cell = &Record::opacity_max},
+      {.name = "radius", .description = "bound on the error of the errors: the reference's", .cell = &Record::radius},
   };
 }
 
-std::vector<Row> partial_pre_integration_rows(const Experiment& experiment, const JsonReader& options,
-                                              const Field& /*field*/) {
-  const Options asked = read_options(options);
-  const std::vector<LinearOptics> slabs = draw_slabs(asked.slabs, experiment.seed);
-  std::vector<Row> rows;
-  for (const std::size_t size : asked.sizes) {
+std::vector<Record> records(const Experiment& experiment, const Options& options) {
+  const std::vector<LinearOptics> slabs = draw_slabs(options.slabs, experiment.seed);
+  std::vector<Record> records;
+  for (const std::size_t size : options.sizes) {
     const PsiTable table(size);
     for (const auto& [look_up, name] : look_ups) {
-      double color_max = 0;
-      double color_l1 = 0;
-      double opacity_max = 0;
-      double radius = 0;
+      Record record{.size = size, .look_up = name, .slabs = slabs.size()};
+      double color_sum = 0;
       for (const auto& [front, back, truth] : slabs) {
         const auto slab =
             partially_pre_integrated_slab(front, back, 1, table(front.extinction, back.extinction, look_up));
         const Vector3<double> error = (slab.head<3>() - truth.color).abs();
-        color_max = std::max(color_max, error.maxCoeff());
-        color_l1 += error.mean();
-        opacity_max = std::max(opacity_max, std::abs(slab[3] - truth.opacity));
-        radius = std::max(radius, truth.radius);
+        record.color_max = std::max(record.color_max, error.maxCoeff());
+        color_sum += error.mean();
+        record.opacity_max = std::max(record.opacity_max, std::abs(slab[3] - truth.opacity));
+        record.radius = std::max(record.radius, truth.radius);
       }
-      rows.push_back({{"size", static_cast<std::int64_t>(size)},
-                      {"look_up", name},
-                      {"slabs", static_cast<std::int64_t>(slabs.size())},
-                      {"bytes", static_cast<std::int64_t>(sizeof(float) * size * size)},
-                      {"error_max", color_max},
-                      {"error_l1", color_l1 / static_cast<double>(slabs.size())},
-                      {"opacity_max", opacity_max},
-                      {"radius", radius}});
+      record.color_mean = color_sum / static_cast<double>(slabs.size());
+      records.push_back(record);
     }
   }
-  return rows;
+  return records;
 }
+
+}  // namespace
+
+extern const Measure partial_pre_integration_measure;
+const Measure partial_pre_integration_measure{
+    MeasureDefinition{.name = "partial_pre_integration",
+                      .summary = "errors of Moreland's partial pre-integration by the size of its table",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_experiment = records}};
 
 }  // namespace raytruth

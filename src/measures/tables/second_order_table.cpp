@@ -8,8 +8,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace raytruth {
@@ -33,7 +37,7 @@ struct Options {
   std::size_t look_ups = 0;
 };
 
-Options read_options(const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "shapes", "optical_depths", "sizes", "counts", "look_ups"});
   Options options{.study = read_table_study(json, largest_table3_size),
                   .methods = {},
@@ -117,104 +121,147 @@ std::vector<LookedUp> look_up_all(const Options& options, const TableAxes& axes,
 /// A value of an 8-bit frame.
 Vec4 in_8_bits(const Vec4& slab) { return (frame_steps * slab).min(frame_steps).max(0).round(); }
 
-void add_errors(Row& row, const std::vector<LookedUp>& all, std::size_t method, std::size_t size) {
+/// A method's errors at the places that are looked up, and at the entries around them.
+struct MethodErrors {
   double entry_max = 0;
-  double entry_l1 = 0;
-  double error_max = 0;
-  double error_l1 = 0;
-  double error_l2 = 0;
+  double entry_mean = 0;
+  double within_one_share = 0;  ///< of the entries
+  double same_8_bit_share = 0;  ///< of the entries
+  double look_up_max = 0;
+  double look_up_mean = 0;
+  double look_up_root_mean_square = 0;
   double radius = 0;
+  double evaluations_per_entry = 0;
+};
+
+MethodErrors errors_of(const std::vector<LookedUp>& all, std::size_t method) {
+  MethodErrors errors;
+  double entry_sum = 0;
+  double sum = 0;
+  double square_sum = 0;
   std::int64_t within_one = 0;
   std::int64_t same = 0;
   std::int64_t evaluations = 0;
   for (const LookedUp& one : all) {
     const Found& found = one.found[method];
-    radius = std::max(radius, one.radius);
+    errors.radius = std::max(errors.radius, one.radius);
     evaluations += found.evaluations;
     const Vec4 error = (found.look_up - one.truth).abs();
-    error_max = std::max(error_max, error.maxCoeff());
-    error_l1 += error.mean();
-    error_l2 += error.square().mean();
+    errors.look_up_max = std::max(errors.look_up_max, error.maxCoeff());
+    sum += error.mean();
+    square_sum += error.square().mean();
     for (std::size_t corner = 0; corner < 8; ++corner) {
       const Vec4 entry_error = (found.entries[corner] - one.true_entries[corner]).abs();
-      entry_max = std::max(entry_max, entry_error.maxCoeff());
-      entry_l1 += entry_error.mean();
+      errors.entry_max = std::max(errors.entry_max, entry_error.maxCoeff());
+      entry_sum += entry_error.mean();
       within_one += entry_error.maxCoeff() * frame_steps <= 1 ? 1 : 0;
       same += (in_8_bits(found.entries[corner]) == in_8_bits(one.true_entries[corner])).all() ? 1 : 0;
     }
   }
   const auto count = static_cast<double>(all.size());
-  const std::size_t entries = size * size * size;
-  const double per_entry = static_cast<double>(evaluations) / (8 * count);
-  row.insert(row.end(), {{"entry_max", entry_max},
-                         {"entry_l1", entry_l1 / (8 * count)},
-                         {"within_one_share", static_cast<double>(within_one) / (8 * count)},
-                         {"same_8_bit_share", static_cast<double>(same) / (8 * count)},
-                         {"error_max", error_max},
-                         {"error_l1", error_l1 / count},
-                         {"error_l2", std::sqrt(error_l2 / count)},
-                         {"radius", radius},
-                         {"evaluations_per_entry", per_entry},
-                         {"evaluations", per_entry * static_cast<double>(entries)},
-                         {"bytes_float32", bytes_of(entries, table_formats[1])},
-                         {"bytes_unorm8", bytes_of(entries, table_formats.back())}});
+  errors.entry_mean = entry_sum / (8 * count);
+  errors.within_one_share = static_cast<double>(within_one) / (8 * count);
+  errors.same_8_bit_share = static_cast<double>(same) / (8 * count);
+  errors.look_up_mean = sum / count;
+  errors.look_up_root_mean_square = std::sqrt(square_sum / count);
+  errors.evaluations_per_entry = static_cast<double>(evaluations) / (8 * count);
+  return errors;
+}
+
+Columns<MethodErrors> error_columns() {
+  const auto error = [](const char* name, const char* description, double MethodErrors::*value) {
+    return RecordColumn<MethodErrors>{.name = name, .description = description, .radius = "radius", .cell = value};
+  };
+  return {
+      error("entry_max", "largest error of an entry against the certified slab, colour channels and opacity",
+            &MethodErrors::entry_max),
+      error("entry_l1", "mean magnitude of the entries' errors over the four channels", &MethodErrors::entry_mean),
+      written_here<MethodErrors>("within_one_share", &MethodErrors::within_one_share),
+      written_here<MethodErrors>("same_8_bit_share", &MethodErrors::same_8_bit_share),
+      error("error_max", "largest error of trilinear look-ups at random scalars", &MethodErrors::look_up_max),
+      error("error_l1", "mean magnitude of it", &MethodErrors::look_up_mean),
+      error("error_l2", "root mean square of it", &MethodErrors::look_up_root_mean_square),
+      {.name = "within_one_share",
+       .description = "share of the entries within one step of an 8-bit frame of the certified slab, all channels",
+       .cell = {}},
+      {.name = "same_8_bit_share",
+       .description = "share of the entries that are the certified slab's when rounded to 8 bits",
+       .cell = {}},
+      {.name = "radius",
+       .description = "bound on the error of the errors: the reference's",
+       .cell = &MethodErrors::radius},
+      {.name = "evaluations_per_entry",
+       .description = "look-ups of the transfer function, or nodes of quadratures; mean of the entries met",
+       .cell = &MethodErrors::evaluations_per_entry},
+  };
+}
+
+/// A method under a transfer function, in a table of one size.
+struct Record {
+  TableKeys keys;
+  std::string method;
+  std::optional<int> iterations;  ///< where their number is fixed
+  MethodErrors errors;
+
+  [[nodiscard]] std::size_t entries() const { return keys.size * keys.size * keys.size; }
+};
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns;
+  append_part(columns, &Record::keys, table_key_columns());
+  append(columns,
+         {{.name = "method",
+           .description = "mid, left: N iterations with the optics at (k + 1/2)/N or k/N; nyquist: as many as "
+                          "the parabola asks for; exact: certified",
+           .is_key = true,
+           .cell = &Record::method},
+          {.name = "iterations", .description = "N; null: not fixed", .is_key = true, .cell = &Record::iterations}});
+  append_part(columns, &Record::errors, error_columns());
+  append(columns, {{.name = "evaluations",
+                    .description = "the same for the whole table",
+                    .cell =
+                        [](const Record& record) {
+                          return record.errors.evaluations_per_entry * static_cast<double>(record.entries());
+                        }},
+                   {.name = "bytes_float32",
+                    .unit = "byte",
+                    .description = "of the table in binary32, RGBA",
+                    .cell = [](const Record& record) { return bytes_of(record.entries(), table_formats[1]); }},
+                   {.name = "bytes_unorm8",
+                    .unit = "byte",
+                    .description = "of the table in 8 bits, RGBA",
+                    .cell = [](const Record& record) { return bytes_of(record.entries(), table_formats.back()); }}});
+  return columns;
+}
+
+std::vector<Record> records(const Experiment& experiment, const Options& options) {
+  std::vector<Record> records;
+  for (const std::string& shape : options.study.shapes)
+    for (const double depth : options.study.optical_depths)
+      for (const std::size_t size : options.study.sizes) {
+        const auto all = look_up_all(options, TableStudy::axes(size),
+                                     TableStudy::transfer(shape, depth, experiment.seed), experiment.seed);
+        for (std::size_t method = 0; method < options.methods.size(); ++method) {
+          const auto& [name, how] = options.methods[method];
+          const auto* const iterations = std::get_if<Iterations>(&how);
+          records.push_back({.keys = {shape, depth, size},
+                             .method = name,
+                             .iterations = iterations != nullptr ? std::optional(iterations->count) : std::nullopt,
+                             .errors = errors_of(all, method)});
+        }
+      }
+  return records;
 }
 
 }  // namespace
 
-std::vector<Column> second_order_table_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_options(options);
-  std::vector<Column> columns = table_key_columns();
-  append(columns, {{.name = "method",
-                    .unit = "",
-                    .description = "mid, left: N iterations with the optics at (k + 1/2)/N or k/N; nyquist: as many as "
-                                   "the parabola asks for; exact: certified",
-                    .is_key = true},
-                   {.name = "iterations", .unit = "", .description = "N; null: not fixed", .is_key = true}});
-  const auto add = [&columns](const char* name, const char* description) {
-    columns.push_back({.name = name, .unit = "", .description = description, .is_key = false, .radius = "radius"});
-  };
-  add("entry_max", "largest error of an entry against the certified slab, colour channels and opacity");
-  add("entry_l1", "mean magnitude of the entries' errors over the four channels");
-  add("error_max", "largest error of trilinear look-ups at random scalars");
-  add("error_l1", "mean magnitude of it");
-  add("error_l2", "root mean square of it");
-  append(columns,
-         {{.name = "within_one_share",
-           .unit = "",
-           .description = "share of the entries within one step of an 8-bit frame of the certified slab, all channels"},
-          {.name = "same_8_bit_share",
-           .unit = "",
-           .description = "share of the entries that are the certified slab's when rounded to 8 bits"},
-          {.name = "radius", .unit = "", .description = "bound on the error of the errors: the reference's"},
-          {.name = "evaluations_per_entry",
-           .unit = "",
-           .description = "look-ups of the transfer function, or nodes of quadratures; mean of the entries met"},
-          {.name = "evaluations", .unit = "", .description = "the same for the whole table"},
-          {.name = "bytes_float32", .unit = "byte", .description = "of the table in binary32, RGBA"},
-          {.name = "bytes_unorm8", .unit = "byte", .description = "of the table in 8 bits, RGBA"}});
-  return columns;
-}
-
-std::vector<Row> second_order_table_rows(const Experiment& experiment, const JsonReader& options,
-                                         const Field& /*field*/) {
-  const Options asked = read_options(options);
-  std::vector<Row> rows;
-  for (const std::string& shape : asked.study.shapes)
-    for (const double depth : asked.study.optical_depths)
-      for (const std::size_t size : asked.study.sizes) {
-        const auto all = look_up_all(asked, TableStudy::axes(size), TableStudy::transfer(shape, depth, experiment.seed),
-                                     experiment.seed);
-        for (std::size_t method = 0; method < asked.methods.size(); ++method) {
-          const auto& [name, how] = asked.methods[method];
-          const auto* const iterations = std::get_if<Iterations>(&how);
-          Row& row = rows.emplace_back(table_keys(shape, depth, size));
-          row.emplace_back("method", name);
-          row.emplace_back("iterations", iterations ? Value(std::int64_t{iterations->count}) : Value());
-          add_errors(row, all, method, size);
-        }
-      }
-  return rows;
-}
+// The function that makes such a table has the name without "_measure".
+extern const Measure second_order_table_measure;
+const Measure second_order_table_measure{
+    MeasureDefinition{.name = "second_order_table",
+                      .summary = "errors of tables of second order by iterations and size, and what they cost",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_experiment = records}};
 
 }  // namespace raytruth

@@ -11,8 +11,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
 
 namespace raytruth {
 
@@ -37,7 +42,7 @@ struct Options {
   std::vector<std::size_t> counted_sizes;  ///< those whose cost is stated
 };
 
-Options read_options(const JsonReader& json) {
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "counted_sizes", "sizes", "shapes", "optical_depths"});
   Options options{.study = read_table_study(json, largest_compared), .counted_sizes = {}};
   for (const JsonReader& size : json.at("counted_sizes").items(2))
@@ -51,96 +56,167 @@ const TableBuilder& builder(std::string_view name) {
   return *std::find_if(list.begin(), list.end(), [name](const TableBuilder& entry) { return entry.name == name; });
 }
 
-void add_costs(const Options& asked, std::vector<Row>& rows) {
+/// What a build of one size takes.
+struct BuildCost {
+  std::size_t size = 0;
+  TableCost cost;
+};
+
+/// How that grows with the size.
+struct CostOrders {
+  std::optional<double> composites;  ///< none where at most one size takes any
+  double exponentials = 0;
+};
+
+/// How far a table is from two others.
+struct BuildDifference {
+  TableKeys keys;
+  TableDifference to_brute_force;
+  TableDifference to_exact;
+};
+
+struct Record {
+  const char* builder;
+  std::variant<BuildCost, CostOrders, BuildDifference> found;
+};
+
+/// Gives the part of a record that is of this type, if it is.
+template <class Part>
+const Part* part_of(const Record& record) {
+  return std::get_if<Part>(&record.found);
+}
+
+void add_costs(const Options& options, std::vector<Record>& records) {
   for (const char* const name : compared) {
     const auto cost = builder(name).cost;
     if (cost == nullptr) continue;
     std::vector<StepError> composites;
     std::vector<StepError> exponentials;
-    for (const std::size_t size : asked.counted_sizes) {
-      const auto count = static_cast<std::int64_t>(size);
-      const TableCost here = cost(count);
+    for (const std::size_t size : options.counted_sizes) {
+      const TableCost here = cost(static_cast<std::int64_t>(size));
       const auto n = static_cast<double>(size);
-      const auto as_double = [](std::int64_t x) { return static_cast<double>(x); };
-      if (here.composites > 0) composites.push_back({n, as_double(here.composites)});
-      exponentials.push_back({n, as_double(here.exponentials)});
-      rows.push_back(
-          {{"part", "cost"},
-           {"builder", name},
-           {"size", count},
-           {"composites", here.composites},
-           {"exponentials", here.exponentials},
-           {"composites_over_brute_force", as_double(here.composites) / as_double(brute_force_cost(count).composites)},
-           {"composites_over_subrange", as_double(here.composites) / as_double(subrange_cost(count).composites)}});
+      if (here.composites > 0) composites.push_back({n, static_cast<double>(here.composites)});
+      exponentials.push_back({n, static_cast<double>(here.exponentials)});
+      records.push_back({name, BuildCost{size, here}});
     }
-    const bool has_composites = composites.size() >= 2;
-    rows.push_back({{"part", "fit"},
-                    {"builder", name},
-                    {"order_composites", has_composites ? Value(fit_order(composites).order) : Value()},
-                    {"order_exponentials", fit_order(exponentials).order}});
+    CostOrders orders{.composites = std::nullopt, .exponentials = fit_order(exponentials).order};
+    if (composites.size() >= 2) orders.composites = fit_order(composites).order;
+    records.push_back({name, orders});
   }
 }
 
-void add_differences(const Experiment& experiment, const Options& asked, std::vector<Row>& rows) {
-  for (const std::string& shape : asked.study.shapes)
-    for (const double depth : asked.study.optical_depths) {
+void add_differences(const Experiment& experiment, const Options& options, std::vector<Record>& records) {
+  for (const std::string& shape : options.study.shapes)
+    for (const double depth : options.study.optical_depths) {
       const PiecewiseLinear transfer = TableStudy::transfer(shape, depth, experiment.seed);
-      for (const std::size_t size : asked.study.sizes) {
+      for (const std::size_t size : options.study.sizes) {
         const TableAxes axes = TableStudy::axes(size);
         const auto brute = builder("brute_force").make(transfer, axes, experiment.emission);
         const auto exact = exact_table(transfer, axes, experiment.emission);
         for (const char* const name : compared) {
           const auto table = builder(name).make(transfer, axes, experiment.emission);
-          const TableDifference to_brute = largest_difference(table, brute);
-          const TableDifference to_exact = largest_difference(table, exact);
-          Row& row = rows.emplace_back(Row{{"part", "difference"}, {"builder", name}});
-          const Row keys = table_keys(shape, depth, size);
-          row.insert(row.end(), keys.begin(), keys.end());
-          row.insert(row.end(), {{"color_to_brute_force", to_brute.color},
-                                 {"opacity_to_brute_force", to_brute.opacity},
-                                 {"largest_to_brute_force", std::max(to_brute.color, to_brute.opacity)},
-                                 {"color_to_exact", to_exact.color},
-                                 {"opacity_to_exact", to_exact.opacity},
-                                 {"largest_to_exact", std::max(to_exact.color, to_exact.opacity)}});
+          records.push_back({name, BuildDifference{.keys = {shape, depth, size},
+                                                   .to_brute_force = largest_difference(table, brute),
+                                                   .to_exact = largest_difference(table, exact)}});
         }
       }
     }
 }
 
-}  // namespace
+/// The composites of a build over those of another builder.
+double composites_over(const BuildCost& build, TableCost (*other)(std::int64_t size)) {
+  return static_cast<double>(build.cost.composites) /
+         static_cast<double>(other(static_cast<std::int64_t>(build.size)).composites);
+}
 
-std::vector<Column> table_builds_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_options(options);
-  std::vector<Column> columns{
-      {.name = "part",
-       .unit = "",
-       .description = "cost: what a build takes; fit: exponents over all sizes; difference: to other tables",
-       .is_key = true},
-      {.name = "builder", .unit = "", .description = "as in `raytruth list tables`", .is_key = true}};
-  append(columns, table_key_columns());
-  columns.insert(
-      columns.end(),
-      {{.name = "composites", .unit = "", .description = "products of two slabs, in closed form"},
-       {.name = "exponentials", .unit = "", .description = "opacity corrections, in closed form"},
-       {.name = "composites_over_brute_force", .unit = "", .description = "as a share of those of brute_force"},
-       {.name = "composites_over_subrange", .unit = "", .description = "as a multiple of those of subrange"},
-       {.name = "order_composites", .unit = "", .description = "slope of log composites over log n, least squares"},
-       {.name = "order_exponentials", .unit = "", .description = "slope of log exponentials over log n"}});
-  for (const std::string to : {"brute_force", "exact"})
-    for (const std::string what : {"color", "opacity", "largest"})
-      columns.push_back({.name = what + "_to_" + to,
-                         .unit = "",
-                         .description = fmt::format("largest difference to {} over all entries, {}", to,
-                                                    what == "largest" ? "colour and opacity" : what)});
+Columns<BuildCost> cost_columns() {
+  return {
+      written_here<BuildCost>("size", &BuildCost::size),
+      {.name = "composites",
+       .description = "products of two slabs, in closed form",
+       .cell = [](const BuildCost& build) { return build.cost.composites; }},
+      {.name = "exponentials",
+       .description = "opacity corrections, in closed form",
+       .cell = [](const BuildCost& build) { return build.cost.exponentials; }},
+      {.name = "composites_over_brute_force",
+       .description = "as a share of those of brute_force",
+       .cell = [](const BuildCost& build) { return composites_over(build, brute_force_cost); }},
+      {.name = "composites_over_subrange",
+       .description = "as a multiple of those of subrange",
+       .cell = [](const BuildCost& build) { return composites_over(build, subrange_cost); }},
+  };
+}
+
+Columns<CostOrders> order_columns() {
+  return {
+      {.name = "order_composites",
+       .description = "slope of log composites over log n, least squares",
+       .cell = &CostOrders::composites},
+      {.name = "order_exponentials",
+       .description = "slope of log exponentials over log n",
+       .cell = &CostOrders::exponentials},
+  };
+}
+
+Columns<BuildDifference> difference_columns() {
+  Columns<BuildDifference> columns;
+  const auto add = [&columns](const std::string& to, TableDifference BuildDifference::*difference) {
+    const auto column = [&](const char* what, const char* over, double (*cell)(const TableDifference&)) {
+      return RecordColumn<BuildDifference>{
+          .name = fmt::format("{}_to_{}", what, to),
+          .description = fmt::format("largest difference to {} over all entries, {}", to, over),
+          .cell = [difference, cell](const BuildDifference& build) { return cell(build.*difference); }};
+    };
+    append(columns, {column("color", "color", [](const TableDifference& found) { return found.color; }),
+                     column("opacity", "opacity", [](const TableDifference& found) { return found.opacity; }),
+                     column("largest", "colour and opacity",
+                            [](const TableDifference& found) { return std::max(found.color, found.opacity); })});
+  };
+  add("brute_force", &BuildDifference::to_brute_force);
+  add("exact", &BuildDifference::to_exact);
   return columns;
 }
 
-std::vector<Row> table_builds_rows(const Experiment& experiment, const JsonReader& options, const Field& /*field*/) {
-  const Options asked = read_options(options);
-  std::vector<Row> rows;
-  add_costs(asked, rows);
-  add_differences(experiment, asked, rows);
-  return rows;
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns{
+      {.name = "part",
+       .description = "cost: what a build takes; fit: exponents over all sizes; difference: to other tables",
+       .is_key = true,
+       .cell =
+           [](const Record& record) {
+             constexpr std::array parts{"cost", "fit", "difference"};
+             return parts[record.found.index()];
+           }},
+      {.name = "builder", .description = "as in `raytruth list tables`", .is_key = true, .cell = &Record::builder}};
+  append_part(
+      columns,
+      [](const Record& record) {
+        const auto* const difference = part_of<BuildDifference>(record);
+        return difference != nullptr ? &difference->keys : nullptr;
+      },
+      table_key_columns());
+  append_part(columns, part_of<BuildCost>, cost_columns());
+  append_part(columns, part_of<CostOrders>, order_columns());
+  append_part(columns, part_of<BuildDifference>, difference_columns());
+  return columns;
 }
+
+std::vector<Record> records(const Experiment& experiment, const Options& options) {
+  std::vector<Record> records;
+  add_costs(options, records);
+  add_differences(experiment, options, records);
+  return records;
+}
+
+}  // namespace
+
+// The text of the compute shaders that make tables has the name without "_measure".
+extern const Measure table_builds_measure;
+const Measure table_builds_measure{
+    MeasureDefinition{.name = "table_builds",
+                      .summary = "composites and exponentials of table builders, and their differences to exact tables",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_experiment = records}};
 
 }  // namespace raytruth

@@ -2,6 +2,11 @@
 #include "measures/tables/table_study.hpp"
 #include "raytruth/transfer/emission.hpp"
 
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
 namespace raytruth {
 
 namespace {
@@ -20,6 +25,21 @@ CertifiedCell::vec4 exact_entry(const CertifiedCell& cell, std::size_t front, st
   return cell.entry(front, back);
 }
 
+struct Options {
+  TableStudy study;
+  std::size_t cells = 0;
+  std::vector<TableFormat> formats;
+  std::vector<int> weight_bits;
+};
+
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
+  json.only({"kind", "shapes", "optical_depths", "sizes", "cells", "formats", "weight_bits"});
+  return {.study = read_table_study(json, largest_table_size),
+          .cells = read_cells(json),
+          .formats = read_formats(json),
+          .weight_bits = read_weight_bits(json)};
+}
+
 /// How far look-ups in this format are from those in binary64 with exact weights, over the same places.
 TableError own_error(CertifiedCells truth, const TableFormat& format, int weight_bits) {
   const TableAxes axes = truth.axes;
@@ -31,65 +51,86 @@ TableError own_error(CertifiedCells truth, const TableFormat& format, int weight
   return bilinear_error(truth, exact_entry, format, weight_bits);
 }
 
-}  // namespace
+/// An exact table in a format, looked up with weights of so many bits.
+struct Record {
+  TableKeys keys;
+  TableFormat format;
+  int weight_bits = 0;  ///< 0: exact
+  CertifiedTableError error;
+  TableError own;         ///< from the same look-ups in binary64 with exact weights
+  TableError resolution;  ///< of those
+};
 
-std::vector<Column> table_formats_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  options.only({"kind", "shapes", "optical_depths", "sizes", "cells", "formats", "weight_bits"});
-  read_table_study(options, largest_table_size);
-  read_cells(options);
-  read_formats(options);
-  read_weight_bits(options);
-  std::vector<Column> columns = table_key_columns();
-  append(columns, {{.name = "format", .unit = "", .description = "of the table's numbers", .is_key = true},
-                   {.name = "weight_bits",
-                    .unit = "bit",
-                    .description = "k, weights of the look-up being multiples of 2^-k; null: exact",
-                    .is_key = true},
-                   {.name = "bytes", .unit = "byte", .description = "of the table, RGBA"}});
-  append(columns, table_error_columns());
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns;
+  append_part(columns, &Record::keys, table_key_columns());
+  append(columns,
+         {{.name = "format",
+           .description = "of the table's numbers",
+           .is_key = true,
+           .cell = [](const Record& record) { return record.format.name; }},
+          {.name = "weight_bits",
+           .unit = "bit",
+           .description = "k, weights of the look-up being multiples of 2^-k; null: exact",
+           .is_key = true,
+           .cell =
+               [](const Record& record) {
+                 return record.weight_bits > 0 ? std::optional(record.weight_bits) : std::nullopt;
+               }},
+          {.name = "bytes", .unit = "byte", .description = "of the table, RGBA", .cell = [](const Record& record) {
+             return bytes_of(record.keys.size * record.keys.size, record.format);
+           }}});
+  append_part(columns, &Record::error, table_error_columns());
   append(columns,
          {{.name = "own_max",
-           .unit = "",
            .description = "largest difference from the same look-ups in binary64 with exact weights: what format and "
-                          "weights cost by themselves"},
-          {.name = "own_l1", .unit = "", .description = "mean magnitude of it"},
-          {.name = "resolution_max", .unit = "", .description = "error_max in binary64 with exact weights"},
-          {.name = "resolution_l1", .unit = "", .description = "error_l1 in binary64 with exact weights"},
+                          "weights cost by themselves",
+           .cell = [](const Record& record) { return record.own.max; }},
+          {.name = "own_l1",
+           .description = "mean magnitude of it",
+           .cell = [](const Record& record) { return record.own.mean; }},
+          {.name = "resolution_max",
+           .description = "error_max in binary64 with exact weights",
+           .cell = [](const Record& record) { return record.resolution.max; }},
+          {.name = "resolution_l1",
+           .description = "error_l1 in binary64 with exact weights",
+           .cell = [](const Record& record) { return record.resolution.mean; }},
           {.name = "format_sets_error",
-           .unit = "",
-           .description = "whether format and weights cost more in the mean than the resolution does"}});
+           .description = "whether format and weights cost more in the mean than the resolution does",
+           .cell = [](const Record& record) { return record.own.mean > record.resolution.mean; }}});
   return columns;
 }
 
-std::vector<Row> table_formats_rows(const Experiment& experiment, const JsonReader& options, const Field& /*field*/) {
-  const TableStudy study = read_table_study(options, largest_table_size);
-  const std::size_t cells = read_cells(options);
-  const std::vector<TableFormat> formats = read_formats(options);
-  const std::vector<int> weight_bits = read_weight_bits(options);
-  std::vector<Row> rows;
-  for (const std::string& shape : study.shapes)
-    for (const double depth : study.optical_depths)
-      for (const std::size_t size : study.sizes) {
+std::vector<Record> records(const Experiment& experiment, const Options& options) {
+  std::vector<Record> records;
+  for (const std::string& shape : options.study.shapes)
+    for (const double depth : options.study.optical_depths)
+      for (const std::size_t size : options.study.sizes) {
         const CertifiedCells truth =
             certified_cells(TableStudy::transfer(shape, depth, experiment.seed), TableStudy::axes(size),
-                            Emission::associated, cells, experiment.seed);
+                            Emission::associated, options.cells, experiment.seed);
         const TableError resolution = bilinear_error(truth, exact_entry);
-        for (const TableFormat& format : formats)
-          for (const int bits : weight_bits) {
-            const TableError own = own_error(truth, format, bits);
-            Row& row = rows.emplace_back(table_keys(shape, depth, size));
-            row.insert(row.end(), {{"format", std::string(format.name)},
-                                   {"weight_bits", bits > 0 ? Value(std::int64_t{bits}) : Value()},
-                                   {"bytes", bytes_of(size * size, format)}});
-            add_table_error(row, bilinear_error(truth, exact_entry, format, bits), truth.radius);
-            row.insert(row.end(), {{"own_max", own.max},
-                                   {"own_l1", own.mean},
-                                   {"resolution_max", resolution.max},
-                                   {"resolution_l1", resolution.mean},
-                                   {"format_sets_error", own.mean > resolution.mean}});
-          }
+        for (const TableFormat& format : options.formats)
+          for (const int bits : options.weight_bits)
+            records.push_back({.keys = {shape, depth, size},
+                               .format = format,
+                               .weight_bits = bits,
+                               .error = {bilinear_error(truth, exact_entry, format, bits), truth.radius},
+                               .own = own_error(truth, format, bits),
+                               .resolution = resolution});
       }
-  return rows;
+  return records;
 }
+
+}  // namespace
+
+// The list of formats has the name without "_measure".
+extern const Measure table_formats_measure;
+const Measure table_formats_measure{
+    MeasureDefinition{.name = "table_formats",
+                      .summary = "errors of look-ups by the format of the table and the weights of the texture unit",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_experiment = records}};
 
 }  // namespace raytruth

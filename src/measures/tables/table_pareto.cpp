@@ -188,8 +188,8 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
 
 }  // namespace
 
-extern const Measure table_pareto;
-const Measure table_pareto{
+extern const Measure table_pareto_measure;
+const Measure table_pareto_measure{
     MeasureDefinition{.name = "table_pareto",
                       .summary = "the smallest table that reaches an accuracy, of all builders, sizes and formats",
                       .read = read_options,

@@ -8,6 +8,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
 
 namespace raytruth {
 
@@ -15,12 +21,22 @@ namespace {
 
 constexpr double meaningful_radii = 10;
 
+struct Options {
+  TableStudy study;
+  std::size_t cells = 0;
+};
+
+Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
+  json.only({"kind", "shapes", "optical_depths", "sizes", "cells"});
+  return {.study = read_table_study(json, largest_table_size), .cells = read_cells(json)};
+}
+
+/// What a slope is fitted to.
 struct Fitted {
   const char* name;
   double TableError::*error;
 };
 
-/// What a slope is fitted to.
 constexpr std::array fitted{Fitted{"max", &TableError::max}, Fitted{"l1", &TableError::mean},
                             Fitted{"l2", &TableError::root_mean_square}, Fitted{"band", &TableError::band_max}};
 
@@ -28,43 +44,119 @@ CertifiedCell::vec4 exact_entry(const CertifiedCell& cell, std::size_t front, st
   return cell.entry(front, back);
 }
 
-struct SizedError {
-  std::size_t size;
-  TableError error;
-  double radius;
+/// A table of exact entries.
+struct Point {
+  std::size_t size = 0;
+  std::size_t cells = 0;  ///< looked up
+  CertifiedTableError error;
+  std::optional<TableError> before;  ///< of the size before, where there is one
 };
 
-/// The error of an exact table of this size.
-SizedError sized_error(const PiecewiseLinear& transfer, std::size_t size, std::size_t cells, std::uint64_t seed) {
-  const CertifiedCells truth = certified_cells(transfer, TableStudy::axes(size), Emission::associated, cells, seed);
-  return {size, bilinear_error(truth, exact_entry), truth.radius};
-}
+/// Of each of `fitted`; none where the reference's radius supports fewer than two errors.
+using Orders = std::array<std::optional<FittedOrder>, fitted.size()>;
 
-/// Orders over the steps 1 / (n - 1) of errors that the reference's radius supports; null where two are not left.
-void add_orders(Row& row, const std::vector<SizedError>& errors) {
-  for (const auto& [name, error] : fitted) {
+/// Over the steps 1 / (n - 1).
+Orders orders_of(const std::vector<Point>& tables) {
+  Orders orders;
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
     std::vector<StepError> points;
-    for (const auto& [size, sized, radius] : errors)
-      if (sized.*error > meaningful_radii * radius) points.push_back({1 / static_cast<double>(size - 1), sized.*error});
-    Value order;
-    Value residual;
-    if (points.size() >= 2) {
-      const FittedOrder fit = fit_order(points);
-      order = fit.order;
-      residual = fit.residual;
+    for (const Point& table : tables) {
+      const double error = table.error.error.*fitted[i].error;
+      if (error > meaningful_radii * table.error.radius)
+        points.push_back({1 / static_cast<double>(table.size - 1), error});
     }
-    row.emplace_back(std::string("order_") + name, order);
-    row.emplace_back(std::string("order_") + name + "_residual", residual);
+    if (points.size() >= 2) orders[i] = fit_order(points);
   }
+  return orders;
 }
 
+/// A table, or the orders over all sizes.
+struct Record {
+  TableKeys keys;
+  std::variant<Point, Orders> found;
+};
+
+Columns<Point> point_columns() {
+  Columns<Point> columns{
+      {.name = "cells", .description = "cells whose 4 x 4 places are looked up", .cell = &Point::cells},
+  };
+  append_part(columns, &Point::error, table_error_columns());
+  const auto ratio = [](double TableError::*error) {
+    return [error](const Point& point) {
+      return point.before ? std::optional<Value>(point.error.error.*error / (*point.before).*error) : std::nullopt;
+    };
+  };
+  append(
+      columns,
+      {{.name = "l1_ratio", .description = "error_l1 over that of the size before", .cell = ratio(&TableError::mean)},
+       {.name = "max_ratio",
+        .description = "error_max over that of the size before",
+        .cell = ratio(&TableError::max)}});
+  return columns;
+}
+
+Columns<Orders> order_columns() {
+  Columns<Orders> columns;
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
+    const auto column = [i](const char* suffix, const char* description, double FittedOrder::*value) {
+      return RecordColumn<Orders>{.name = fmt::format("order_{}{}", fitted[i].name, suffix),
+                                  .description = description,
+                                  .cell = [i, value](const Orders& orders) {
+                                    return orders[i] ? std::optional((*orders[i]).*value) : std::nullopt;
+                                  }};
+    };
+    append(columns, {column("", "slope of the logarithm of the error over that of 1/(n - 1)", &FittedOrder::order),
+                     column("_residual", "root mean square of log2(error) about the line", &FittedOrder::residual)});
+  }
+  return columns;
+}
+
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+  Columns<Record> columns;
+  append_part(columns, &Record::keys, table_key_columns());
+  columns.push_back(
+      {.name = "part",
+       .description = "point: a table of exact entries; fit: the orders over all sizes",
+       .is_key = true,
+       .cell = [](const Record& record) { return std::holds_alternative<Point>(record.found) ? "point" : "fit"; }});
+  append_part(
+      columns, [](const Record& record) { return std::get_if<Point>(&record.found); }, point_columns());
+  append_part(
+      columns, [](const Record& record) { return std::get_if<Orders>(&record.found); }, order_columns());
+  return columns;
+}
+
+std::vector<Record> records(const Experiment& experiment, const Options& options) {
+  std::vector<Record> records;
+  for (const std::string& shape : options.study.shapes)
+    for (const double depth : options.study.optical_depths) {
+      const PiecewiseLinear transfer = TableStudy::transfer(shape, depth, experiment.seed);
+      std::vector<Point> points;
+      for (const std::size_t size : options.study.sizes) {
+        const CertifiedCells truth =
+            certified_cells(transfer, TableStudy::axes(size), Emission::associated, options.cells, experiment.seed);
+        const std::size_t side = std::min(options.cells, size - 1);
+        Point point{.size = size,
+                    .cells = side * side,
+                    .error = {bilinear_error(truth, exact_entry), truth.radius},
+                    .before = std::nullopt};
+        if (!points.empty()) point.before = points.back().error.error;
+        points.push_back(point);
+        records.push_back({{shape, depth, size}, point});
+      }
+      records.push_back({{shape, depth, options.study.sizes.back()}, orders_of(points)});
+    }
+  return records;
+}
+
+/// Of the second measure, a map of the errors of one table.
 struct Map {
   std::vector<std::string> shapes;
-  double optical_depth;
-  std::size_t size;
+  double optical_depth = 0;
+  std::size_t size = 0;
 };
 
-Map read_map(const JsonReader& json) {
+Map read_map(const Experiment& /*experiment*/, const JsonReader& json) {
   constexpr std::int64_t largest_map = 513;
   json.only({"kind", "shapes", "optical_depth", "size"});
   Map map{.shapes = {},
@@ -80,92 +172,62 @@ int gray_of(double error) {
   return static_cast<int>(std::lround(255 * std::clamp(1 + std::log10(std::max(error, 1e-300)) / decades, 0.0, 1.0)));
 }
 
-}  // namespace
+/// A line of cells.
+struct Line {
+  TableKeys keys;
+  std::size_t line = 0;  ///< 0 at the lowest back scalar
+  double largest = 0;
+  std::string pixels;
+};
 
-std::vector<Column> table_resolution_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  options.only({"kind", "shapes", "optical_depths", "sizes", "cells"});
-  read_table_study(options, largest_table_size);
-  read_cells(options);
-  std::vector<Column> columns = table_key_columns();
-  columns.push_back({.name = "part",
-                     .unit = "",
-                     .description = "point: a table of exact entries; fit: the orders over all sizes",
-                     .is_key = true});
-  columns.push_back({.name = "cells", .unit = "", .description = "cells whose 4 x 4 places are looked up"});
-  append(columns, table_error_columns());
-  columns.push_back({.name = "l1_ratio", .unit = "", .description = "error_l1 over that of the size before"});
-  columns.push_back({.name = "max_ratio", .unit = "", .description = "error_max over that of the size before"});
-  for (const auto& [name, error] : fitted) {
-    const std::string order = std::string("order_") + name;
-    columns.push_back(
-        {.name = order, .unit = "", .description = "slope of the logarithm of the error over that of 1/(n - 1)"});
-    columns.push_back(
-        {.name = order + "_residual", .unit = "", .description = "root mean square of log2(error) about the line"});
-  }
+Columns<Line> line_columns(const Experiment& /*experiment*/, const Map& /*map*/) {
+  Columns<Line> columns;
+  append_part(columns, &Line::keys, table_key_columns());
+  append(columns,
+         {{.name = "line", .description = "of cells, 0 at the lowest back scalar", .is_key = true, .cell = &Line::line},
+          {.name = "line_max", .description = "largest error of look-ups in these cells", .cell = &Line::largest},
+          {.name = "pixels",
+           .description = "largest error of look-ups in each cell, front scalar ascending, exact entries: two "
+                          "hexadecimal digits of 255 (1 + log10(error) / 6), 1e-6 being black and 1 white",
+           .cell = &Line::pixels}});
   return columns;
 }
 
-std::vector<Row> table_resolution_rows(const Experiment& experiment, const JsonReader& options,
-                                       const Field& /*field*/) {
-  const TableStudy study = read_table_study(options, largest_table_size);
-  const std::size_t cells = read_cells(options);
-  std::vector<Row> rows;
-  for (const std::string& shape : study.shapes)
-    for (const double depth : study.optical_depths) {
-      const PiecewiseLinear transfer = TableStudy::transfer(shape, depth, experiment.seed);
-      std::vector<SizedError> errors;
-      for (const std::size_t size : study.sizes) {
-        errors.push_back(sized_error(transfer, size, cells, experiment.seed));
-        const auto& [its_size, error, radius] = errors.back();
-        Row& row = rows.emplace_back(table_keys(shape, depth, size));
-        row.emplace_back("part", "point");
-        row.emplace_back("cells", static_cast<std::int64_t>(std::min(cells, size - 1) * std::min(cells, size - 1)));
-        add_table_error(row, error, radius);
-        if (errors.size() < 2) continue;
-        const TableError& before = errors[errors.size() - 2].error;
-        row.emplace_back("l1_ratio", error.mean / before.mean);
-        row.emplace_back("max_ratio", error.max / before.max);
-      }
-      Row& row = rows.emplace_back(table_keys(shape, depth, study.sizes.back()));
-      row.emplace_back("part", "fit");
-      add_orders(row, errors);
-    }
-  return rows;
-}
-
-std::vector<Column> table_error_map_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_map(options);
-  std::vector<Column> columns = table_key_columns();
-  append(columns, {{.name = "line", .unit = "", .description = "of cells, 0 at the lowest back scalar", .is_key = true},
-                   {.name = "line_max", .unit = "", .description = "largest error of look-ups in these cells"},
-                   {.name = "pixels",
-                    .unit = "",
-                    .description = "largest error of look-ups in each cell, front scalar ascending, exact entries: two "
-                                   "hexadecimal digits of 255 (1 + log10(error) / 6), 1e-6 being black and 1 white"}});
-  return columns;
-}
-
-std::vector<Row> table_error_map_rows(const Experiment& experiment, const JsonReader& options, const Field& /*field*/) {
-  const Map map = read_map(options);
+std::vector<Line> lines(const Experiment& experiment, const Map& map) {
   const TableAxes axes = TableStudy::axes(map.size);
-  std::vector<Row> rows;
+  std::vector<Line> lines;
   for (const std::string& shape : map.shapes) {
     const CertifiedCells truth = certified_cells(TableStudy::transfer(shape, map.optical_depth, experiment.seed), axes,
                                                  Emission::associated, map.size, experiment.seed);
     const std::size_t side = map.size - 1;
-    for (std::size_t line = 0; line < side; ++line) {
-      double line_max = 0;
-      std::string pixels;
+    for (std::size_t row = 0; row < side; ++row) {
+      Line& line = lines.emplace_back(
+          Line{.keys = {shape, map.optical_depth, map.size}, .line = row, .largest = 0, .pixels = {}});
       for (std::size_t i = 0; i < side; ++i) {
-        const double error = bilinear_error({axes, {truth.cells[line * side + i]}, truth.radius}, exact_entry).max;
-        line_max = std::max(line_max, error);
-        pixels += fmt::format("{:02x}", gray_of(error));
+        const double error = bilinear_error({axes, {truth.cells[row * side + i]}, truth.radius}, exact_entry).max;
+        line.largest = std::max(line.largest, error);
+        line.pixels += fmt::format("{:02x}", gray_of(error));
       }
-      Row& row = rows.emplace_back(table_keys(shape, map.optical_depth, map.size));
-      row.insert(row.end(), {{"line", static_cast<std::int64_t>(line)}, {"line_max", line_max}, {"pixels", pixels}});
     }
   }
-  return rows;
+  return lines;
 }
+
+}  // namespace
+
+extern const Measure table_resolution_measure;
+const Measure table_resolution_measure{
+    MeasureDefinition{.name = "table_resolution",
+                      .summary = "errors of look-ups in exact tables against their size, and their orders",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_experiment = records}};
+
+extern const Measure table_error_map_measure;
+const Measure table_error_map_measure{MeasureDefinition{.name = "table_error_map",
+                                                        .summary = "where on an exact table look-ups err",
+                                                        .read = read_map,
+                                                        .columns = line_columns,
+                                                        .of_experiment = lines}};
 
 }  // namespace raytruth

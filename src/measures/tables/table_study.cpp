@@ -55,52 +55,54 @@ std::vector<TableFormat> read_formats(const JsonReader& json) {
   return formats;
 }
 
-std::vector<Column> table_key_columns() {
+Columns<TableKeys> table_key_columns() {
   return {
-      {.name = "shape", .unit = "", .description = "transfer function", .is_key = true},
+      {.name = "shape", .description = "transfer function", .is_key = true, .cell = &TableKeys::shape},
       {.name = "optical_depth",
-       .unit = "",
        .description = "of a slab that meets the largest extinction all along",
-       .is_key = true},
-      {.name = "size", .unit = "", .description = "n, entries along each axis of the table", .is_key = true},
+       .is_key = true,
+       .cell = &TableKeys::optical_depth},
+      {.name = "size",
+       .description = "n, entries along each axis of the table",
+       .is_key = true,
+       .cell = &TableKeys::size},
   };
-}
-
-Row table_keys(const std::string& shape, double optical_depth, std::size_t size) {
-  return {{"shape", shape}, {"optical_depth", optical_depth}, {"size", static_cast<std::int64_t>(size)}};
 }
 
 std::int64_t bytes_of(std::size_t entries, const TableFormat& format) {
   return static_cast<std::int64_t>(4 * format.bytes * entries);
 }
 
-std::vector<Column> table_error_columns() {
-  std::vector<Column> columns;
-  const auto add = [&columns](const char* name, const char* description) {
-    columns.push_back({.name = name, .unit = "", .description = description, .is_key = false, .radius = "radius"});
+Columns<CertifiedTableError> table_error_columns() {
+  const auto column = [](const char* name, const char* description, double TableError::*error) {
+    return RecordColumn<CertifiedTableError>{
+        .name = name,
+        .description = description,
+        .radius = "radius",
+        .cell = [error](const CertifiedTableError& of_table) { return of_table.error.*error; }};
   };
-  add("error_max", "largest error of a look-up, all places, colour channels and opacity, against certified slabs");
-  add("error_l1", "mean magnitude of the error over the area of the table and the four channels");
-  add("error_l2", "root mean square of it");
-  add("band_max", "largest error in the diagonal band, cells with |i - j| <= 1");
-  add("band_l1", "mean magnitude in the band");
-  add("outside_max", "largest error outside of the band");
-  columns.push_back({.name = "front", .unit = "scalar", .description = "front scalar of the largest error"});
-  columns.push_back({.name = "back", .unit = "scalar", .description = "its back scalar"});
-  columns.push_back({.name = "radius", .unit = "", .description = "bound on the error of the errors: the reference's"});
-  return columns;
-}
-
-void add_table_error(Row& row, const TableError& error, double radius) {
-  row.insert(row.end(), {{"error_max", error.max},
-                         {"error_l1", error.mean},
-                         {"error_l2", error.root_mean_square},
-                         {"band_max", error.band_max},
-                         {"band_l1", error.band_mean},
-                         {"outside_max", error.outside_max},
-                         {"front", error.front},
-                         {"back", error.back},
-                         {"radius", radius}});
+  return {
+      column("error_max",
+             "largest error of a look-up, all places, colour channels and opacity, against certified slabs",
+             &TableError::max),
+      column("error_l1", "mean magnitude of the error over the area of the table and the four channels",
+             &TableError::mean),
+      column("error_l2", "root mean square of it", &TableError::root_mean_square),
+      column("band_max", "largest error in the diagonal band, cells with |i - j| <= 1", &TableError::band_max),
+      column("band_l1", "mean magnitude in the band", &TableError::band_mean),
+      column("outside_max", "largest error outside of the band", &TableError::outside_max),
+      {.name = "front",
+       .unit = "scalar",
+       .description = "front scalar of the largest error",
+       .cell = [](const CertifiedTableError& of_table) { return of_table.error.front; }},
+      {.name = "back",
+       .unit = "scalar",
+       .description = "its back scalar",
+       .cell = [](const CertifiedTableError& of_table) { return of_table.error.back; }},
+      {.name = "radius",
+       .description = "bound on the error of the errors: the reference's",
+       .cell = &CertifiedTableError::radius},
+  };
 }
 
 }  // namespace raytruth

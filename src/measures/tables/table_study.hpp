@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/row.hpp"
+#include "experiments/columns.hpp"
 #include "raytruth/documents/json/json_reader.hpp"
 #include "raytruth/tables/table_error.hpp"
 #include "raytruth/transfer/piecewise_linear.hpp"
@@ -33,15 +33,24 @@ std::size_t read_cells(const JsonReader& json);
 /// "formats": names of `table_formats`.
 std::vector<TableFormat> read_formats(const JsonReader& json);
 
-/// The keys `shape`, `optical_depth` and `size`.
-std::vector<Column> table_key_columns();
-Row table_keys(const std::string& shape, double optical_depth, std::size_t size);
+/// Which table a row is about.
+struct TableKeys {
+  std::string shape;
+  double optical_depth = 0;
+  std::size_t size = 0;
+};
+
+Columns<TableKeys> table_key_columns();
 
 /// Bytes of an RGBA table of so many entries.
 std::int64_t bytes_of(std::size_t entries, const TableFormat& format);
 
-/// The columns of a TableError and of its reference's `radius`, and their cells.
-std::vector<Column> table_error_columns();
-void add_table_error(Row& row, const TableError& error, double radius);
+/// How far look-ups in a table are from the truth, and how far that may be off: the radius of the reference.
+struct CertifiedTableError {
+  TableError error;
+  double radius = 0;
+};
+
+Columns<CertifiedTableError> table_error_columns();
 
 }  // namespace raytruth

@@ -7,8 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 namespace raytruth {
 
@@ -19,7 +23,7 @@ constexpr std::size_t largest_in_50_digits = 64;
 constexpr std::size_t fronts = 9;  // entries i per width, from 0 to the last that the width leaves
 constexpr std::array widths{1U, 4U, 16U, 64U};
 
-TableStudy read_options(const JsonReader& json) {
+TableStudy read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   json.only({"kind", "sizes", "shapes", "optical_depths"});
   return read_table_study(json, largest_size);
 }
@@ -51,7 +55,7 @@ DiscreteTransfer mirrored(DiscreteTransfer transfer) {
 
 /// A table size under one transfer function, and the truth for some of its entries.
 struct Study {
-  Row keys;
+  TableKeys keys;
   DiscreteTransfer transfer;
   TableAxes axes;
   std::vector<std::pair<std::size_t, std::size_t>> entries;  ///< front and back
@@ -85,22 +89,41 @@ struct Arithmetic {
 template <class Real>
 using Make = WeightedTables<Real> (*)(const DiscreteTransfer&, const TableAxes&);
 
+/// What holds of all entries of a table.
+struct WholeTable {
+  double identity_error = 0;
+  double asymmetry = 0;
+  double bound = 0;  ///< on either
+};
+
+/// The errors of one entry, the largest of its channels.
+struct Entry {
+  std::size_t front = 0;
+  std::size_t back = 0;
+  double error = 0;
+  double relative_error = 0;
+  double digits_lost = 0;
+};
+
+struct Record {
+  const char* arithmetic;
+  const char* method;
+  TableKeys keys;
+  std::variant<WholeTable, Entry> found;
+};
+
 template <class Real>
-void add_rows(const Study& study, const Arithmetic& arithmetic, const char* method, Make<Real> make,
-              std::vector<Row>& rows) {
+void add_records(const Study& study, const Arithmetic& arithmetic, const char* method, Make<Real> make,
+                 std::vector<Record>& records) {
   const double unit = std::ldexp(1.0, -arithmetic.digits);
   const auto tables = make(study.transfer, study.axes);
   const auto whole = subrange_table<Real>(study.transfer, study.axes);
   const auto mirror_image = make(mirrored(study.transfer), study.axes);
   const std::size_t last = study.axes.size - 1;
-  const auto keys = [&](const char* part) {
-    Row row{{"part", part}, {"arithmetic", arithmetic.name}, {"method", method}};
-    row.insert(row.end(), study.keys.begin(), study.keys.end());
-    return row;
-  };
+  const auto add = [&](const auto& found) { records.push_back({arithmetic.name, method, study.keys, found}); };
 
-  double identity = 0;
-  double asymmetry = 0;
+  // A sum of n positive terms errs by at most n roundings of the largest; front, back and whole are three.
+  WholeTable of_all{.bound = 3 * static_cast<double>(study.axes.size) * unit};
   for (std::size_t back = 0; back <= last; ++back)
     for (std::size_t front = 0; front <= last; ++front)
       for (int channel = 0; channel < 3; ++channel) {
@@ -108,99 +131,106 @@ void add_rows(const Study& study, const Arithmetic& arithmetic, const char* meth
         const auto to_back = tables.back.at(front, back);
         const Real50 sum = of(tables.front.at(front, back)) + of(to_back);
         const auto apart = [](const Real50& a, const Real50& b) { return static_cast<double>(abs(Real50(a - b))); };
-        identity = std::max(identity, apart(sum, of(whole.at(front, back))));
-        asymmetry = std::max(asymmetry, apart(of(to_back), of(mirror_image.back.at(last - front, last - back))));
+        of_all.identity_error = std::max(of_all.identity_error, apart(sum, of(whole.at(front, back))));
+        of_all.asymmetry =
+            std::max(of_all.asymmetry, apart(of(to_back), of(mirror_image.back.at(last - front, last - back))));
       }
-  Row table_row = keys("table");
-  // A sum of n positive terms errs by at most n roundings of the largest; front, back and whole are three.
-  const double bound = 3 * static_cast<double>(study.axes.size) * unit;
-  table_row.insert(table_row.end(), {{"identity_error", identity},
-                                     {"identity_over_bound", identity / bound},
-                                     {"asymmetry", asymmetry},
-                                     {"asymmetry_over_bound", asymmetry / bound}});
-  rows.push_back(table_row);
+  add(of_all);
 
   for (std::size_t i = 0; i < study.entries.size(); ++i) {
     const auto& [front, back] = study.entries[i];
     const auto found = tables.back.at(front, back);
-    double error = 0;
-    double relative = 0;
+    Entry entry{.front = front, .back = back};
     for (int channel = 0; channel < 3; ++channel) {
       const Real50& truth = study.truths[i][channel];
       if (truth == 0) continue;
       const auto difference = static_cast<double>(abs(Real50(widened(found[channel]) - truth)));
-      error = std::max(error, difference);
-      relative = std::max(relative, difference / to_double(truth));
+      entry.error = std::max(entry.error, difference);
+      entry.relative_error = std::max(entry.relative_error, difference / to_double(truth));
     }
-    Row row = keys("entry");
-    row.insert(row.end(), {{"front", static_cast<std::int64_t>(front)},
-                           {"back", static_cast<std::int64_t>(back)},
-                           {"width", static_cast<std::int64_t>(front < back ? back - front : front - back)},
-                           {"weighted_error", error},
-                           {"relative_error", relative},
-                           {"digits_lost", relative > unit ? std::log10(relative / unit) : 0.0}});
-    rows.push_back(row);
+    if (entry.relative_error > unit) entry.digits_lost = std::log10(entry.relative_error / unit);
+    add(entry);
   }
 }
 
-}  // namespace
-
-std::vector<Column> weighted_tables_columns(const Experiment& /*experiment*/, const JsonReader& options) {
-  read_options(options);
-  std::vector<Column> columns{
-      {.name = "part", .unit = "", .description = "table: all entries; entry: one of them", .is_key = true},
-      {.name = "arithmetic",
-       .unit = "",
-       .description = "binary64, binary32, or 50 digits up to n = 64",
-       .is_key = true},
-      {.name = "method",
-       .unit = "",
-       .description = "difference: C^W = (C^G - i C^1)/(j - i) as printed; sums: slabs (C, M)",
-       .is_key = true},
+Columns<Entry> entry_columns() {
+  return {
+      {.name = "front", .description = "i", .is_key = true, .cell = &Entry::front},
+      {.name = "back", .description = "j", .is_key = true, .cell = &Entry::back},
+      {.name = "width",
+       .description = "|j - i|",
+       .cell =
+           [](const Entry& entry) {
+             return entry.front < entry.back ? entry.back - entry.front : entry.front - entry.back;
+           }},
+      {.name = "weighted_error",
+       .description = "of the back-weighted colour, against its sum in 50 digits",
+       .cell = &Entry::error},
+      {.name = "relative_error",
+       .description = "the same as a share of the channel, the largest of three",
+       .cell = &Entry::relative_error},
+      {.name = "digits_lost",
+       .description = "log10 of relative_error over half a unit in the last place",
+       .cell = &Entry::digits_lost},
   };
-  append(columns, table_key_columns());
-  columns.insert(
-      columns.end(),
-      {
-          {.name = "front", .unit = "", .description = "i", .is_key = true},
-          {.name = "back", .unit = "", .description = "j", .is_key = true},
-          {.name = "width", .unit = "", .description = "|j - i|"},
-          {.name = "weighted_error",
-           .unit = "",
-           .description = "of the back-weighted colour, against its sum in 50 digits"},
-          {.name = "relative_error",
-           .unit = "",
-           .description = "the same as a share of the channel, the largest of three"},
-          {.name = "digits_lost",
-           .unit = "",
-           .description = "log10 of relative_error over half a unit in the last place"},
-          {.name = "identity_error", .unit = "", .description = "largest |front + back - unweighted|"},
-          {.name = "identity_over_bound", .unit = "", .description = "over 3 n half units in the last place of 1"},
-          {.name = "asymmetry",
-           .unit = "",
-           .description = "largest difference to the table of the mirrored transfer function, read from the other end"},
-          {.name = "asymmetry_over_bound", .unit = "", .description = "over 3 n half units in the last place of 1"},
-      });
+}
+
+Columns<WholeTable> whole_table_columns() {
+  return {
+      {.name = "identity_error",
+       .description = "largest |front + back - unweighted|",
+       .cell = &WholeTable::identity_error},
+      {.name = "identity_over_bound",
+       .description = "over 3 n half units in the last place of 1",
+       .cell = [](const WholeTable& table) { return table.identity_error / table.bound; }},
+      {.name = "asymmetry",
+       .description = "largest difference to the table of the mirrored transfer function, read from the other end",
+       .cell = &WholeTable::asymmetry},
+      {.name = "asymmetry_over_bound",
+       .description = "over 3 n half units in the last place of 1",
+       .cell = [](const WholeTable& table) { return table.asymmetry / table.bound; }},
+  };
+}
+
+Columns<Record> columns(const Experiment& /*experiment*/, const TableStudy& /*study*/) {
+  Columns<Record> columns{
+      {.name = "part",
+       .description = "table: all entries; entry: one of them",
+       .is_key = true,
+       .cell = [](const Record& record) { return std::holds_alternative<Entry>(record.found) ? "entry" : "table"; }},
+      {.name = "arithmetic",
+       .description = "binary64, binary32, or 50 digits up to n = 64",
+       .is_key = true,
+       .cell = &Record::arithmetic},
+      {.name = "method",
+       .description = "difference: C^W = (C^G - i C^1)/(j - i) as printed; sums: slabs (C, M)",
+       .is_key = true,
+       .cell = &Record::method},
+  };
+  append_part(columns, &Record::keys, table_key_columns());
+  append_part(
+      columns, [](const Record& record) { return std::get_if<Entry>(&record.found); }, entry_columns());
+  append_part(
+      columns, [](const Record& record) { return std::get_if<WholeTable>(&record.found); }, whole_table_columns());
   return columns;
 }
 
-std::vector<Row> weighted_tables_rows(const Experiment& experiment, const JsonReader& options, const Field& /*field*/) {
-  const TableStudy asked = read_options(options);
-  std::vector<Row> rows;
+std::vector<Record> records(const Experiment& experiment, const TableStudy& asked) {
+  std::vector<Record> records;
   for (const std::string& shape : asked.shapes)
     for (const double depth : asked.optical_depths) {
       const PiecewiseLinear transfer = TableStudy::transfer(shape, depth, experiment.seed);
       for (const std::size_t size : asked.sizes) {
         const TableAxes axes = TableStudy::axes(size);
-        Study study{.keys = table_keys(shape, depth, size),
+        Study study{.keys = {shape, depth, size},
                     .transfer = interval_means(transfer, axes, experiment.emission),
                     .axes = axes,
                     .entries = {},
                     .truths = {}};
         choose_entries(study);
         const auto add = [&]<class Real>(const Arithmetic& arithmetic) {
-          add_rows<Real>(study, arithmetic, "difference", weighted_tables_by_difference<Real>, rows);
-          add_rows<Real>(study, arithmetic, "sums", weighted_tables<Real>, rows);
+          add_records<Real>(study, arithmetic, "difference", weighted_tables_by_difference<Real>, records);
+          add_records<Real>(study, arithmetic, "sums", weighted_tables<Real>, records);
         };
         if (size <= largest_in_50_digits)
           add.template operator()<Real50>({"decimal50", std::numeric_limits<Real50>::digits});
@@ -208,7 +238,18 @@ std::vector<Row> weighted_tables_rows(const Experiment& experiment, const JsonRe
         add.template operator()<Binary32>({"binary32", std::numeric_limits<float>::digits});
       }
     }
-  return rows;
+  return records;
 }
+
+}  // namespace
+
+// The function that makes such tables has the name without "_measure".
+extern const Measure weighted_tables_measure;
+const Measure weighted_tables_measure{
+    MeasureDefinition{.name = "weighted_tables",
+                      .summary = "digits that weighted tables lose, as the printed difference and as sums",
+                      .read = read_options,
+                      .columns = columns,
+                      .of_experiment = records}};
 
 }  // namespace raytruth

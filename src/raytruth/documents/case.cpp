@@ -9,8 +9,7 @@
 #include "raytruth/reference/ray_integral.hpp"
 #include "raytruth/schemes/scheme_integral.hpp"
 #include "raytruth/signals/marschner_lobb.hpp"
-#include "raytruth/signals/tricubic.hpp"
-#include "raytruth/signals/trilinear.hpp"
+#include "raytruth/signals/ray_field.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -79,6 +78,18 @@ std::vector<std::string_view> scheme_names() {
   std::vector<std::string_view> names;
   for (const IntegralScheme& scheme : catalogue::integral_schemes()) names.push_back(scheme.name);
   return names;
+}
+
+/// The ray's signal, and how far it may be from the field where that is asked for.
+template <class Field>
+void trace(const JsonReader& json, const Field& field, const Ray& ray, Case& result) {
+  Chain<Field::degree> chain;
+  json.at("origin").blame_for([&] {
+    field.trace(ray, chain);
+    return 0;
+  });
+  if (result.transfer) result.signal_error = field.error(ray, chain);
+  result.signal = std::move(chain);
 }
 
 template <int Degree>
@@ -231,31 +242,20 @@ void CaseReader::read_trilinear(const JsonReader& json, Case& result, std::vecto
   json.only({"kind", "volume", "repair", "origin", "direction", "length"});
   const Ray ray = read_ray(json);
   const Grid& grid = read_volume_of(json, warnings);
-  auto chain = json.at("origin").blame_for([&] { return trace_trilinear(grid, ray); });
-  if (result.transfer) result.signal_error = trilinear_error(grid, ray, chain);
-  result.signal = std::move(chain);
+  trace(json, TrilinearField(grid), ray, result);
 }
 
 void CaseReader::read_tricubic(const JsonReader& json, Case& result, std::vector<std::string>& warnings) {
   json.only({"kind", "volume", "repair", "origin", "direction", "length", "kernel", "prefilter"});
   const Ray ray = read_ray(json);
   const bool is_bspline = json.at("kernel").word({"bspline", "catmull_rom"}) == "bspline";
-  const auto kernel = is_bspline ? CubicKernel::bspline : CubicKernel::catmull_rom;
   const auto prefilter = json.find("prefilter");
   const bool is_prefiltered = prefilter && prefilter->boolean();
   if (is_prefiltered && !is_bspline) prefilter->refuse_value("false: catmull_rom passes through its voxels as it is;");
-  const Grid& voxels = read_volume_of(json, warnings);
-  const Grid coefficients = is_prefiltered ? bspline_coefficients(voxels) : Grid{};
-  const Grid& grid = is_prefiltered ? coefficients : voxels;
-  Chain<largest_degree> chain;
-  json.at("origin").blame_for([&] {
-    trace_tricubic(grid, kernel, ray, chain);
-    return 0;
-  });
-  if (result.transfer)
-    result.signal_error =
-        tricubic_error(grid, kernel, ray, chain, is_prefiltered ? prefilter_error(voxels, grid) : 0.0);
-  result.signal = std::move(chain);
+  const FieldKind kind = !is_bspline      ? FieldKind::catmull_rom
+                         : is_prefiltered ? FieldKind::bspline_prefiltered
+                                          : FieldKind::bspline;
+  trace(json, TricubicField(read_volume_of(json, warnings), kind), ray, result);
 }
 
 const Grid& CaseReader::read_volume_of(const JsonReader& signal, std::vector<std::string>& warnings) {
