@@ -31,7 +31,7 @@ def ledger(results):
         if row["verdict"] == "contradicted":
             name = row["claim"] + (f" ({row['part']})" if row["part"] else "")
             measured = f"{number(row['measured'])} ({number(row['low'])} to {number(row['high'])})"
-            experiment = f"[{row['experiment']}](results/{row['experiment']}.json)"
+            experiment = f"[{row['experiment']}]({row['experiment']}.json)"
             contradicted.append([name, number(row["stated"]), measured, experiment])
     head = ["contradicted", "published", "measured (low to high)", "experiment"]
     return table(["publication", *verdicts], [*lines, ["all", *counts(rows)]]) + "\n\n" + table(head, contradicted)
@@ -45,14 +45,28 @@ def conformance(results):
     return table(["level", *schemes], [[level.replace("_", " "), *(digits[level, scheme] for scheme in schemes)] for level in levels])
 
 
+def machine(context):
+    """What a report says of the machine that it was made on; `cpu` is there if the run named it."""
+    cores = f"{context['num_cpus']} cores at {context['mhz_per_cpu'] / 1000:.1f} GHz"
+    caches = [f"L{cache['level']} {cache['size'] // 1024} KiB" for cache in context["caches"] if cache["type"] != "Instruction"]
+    return ", ".join([*([context["cpu"]] if "cpu" in context else []), cores, *caches, context["date"][:10]])
+
+
 def benchmarks(results):
-    rows = []
+    """A table for each report, under the machine that it was made on."""
+    tables = []
     for file in sorted(results.glob("benchmarks/*.json")):
-        for entry in json.loads(file.read_text(encoding="utf-8"))["benchmarks"]:
+        report = json.loads(file.read_text(encoding="utf-8"))
+        rows = []
+        for entry in report["benchmarks"]:
             if entry.get("aggregate_name") == "median" and "speedup" in entry:
                 name = entry["run_name"].removesuffix("/manual_time").replace("_", " ")
                 rows.append([name, f"{entry['speedup']:.3g}", f"{1e6 * entry['subject_seconds']:.4g}"])
-    return table(["subject against peer", "speedup", "subject, µs"], rows)
+        if rows:
+            link = f"[{file.stem}](benchmarks/{file.name})"
+            head = ["subject against peer", "speedup", "subject, µs"]
+            tables.append(f"{link}: {machine(report['context'])}\n\n{table(head, rows)}")
+    return "\n\n".join(tables)
 
 
 def signatures(rules):
@@ -66,7 +80,7 @@ def signatures(rules):
 
 def functions(results):
     document = json.loads((results / "gl_cross_check.json").read_text(encoding="utf-8"))
-    text = signatures(results.parent / "src" / "rules")
+    text = signatures(results.parent / "src" / "raytruth" / "rules")
     worst = {}
     for row in document["rows"]:
         if row["measure"] == "gl_functions":
@@ -87,7 +101,7 @@ def fill(file, text, name, content):
     return filled
 
 
-TABLES = {"README.md": (ledger, conformance, benchmarks), "src/raytruth/rules/README.md": (functions,)}
+TABLES = {"results/README.md": (ledger, conformance, benchmarks), "src/raytruth/rules/README.md": (functions,)}
 
 
 def main():

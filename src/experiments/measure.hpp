@@ -64,10 +64,10 @@ struct MeasureDefinition {
   std::vector<Record> (*of_field)(const Experiment&, const Options&, const Field&) = nullptr;
   /// Asked once, without fields.
   std::vector<Record> (*of_experiment)(const Experiment&, const Options&) = nullptr;
-  /// The same for minutes of work: block by block of so many.
+  /// Asked once where it takes minutes of work: block by block, of so many.
   std::vector<Record> (*of_block)(const Experiment&, const Options&, std::int64_t block) = nullptr;
   std::int64_t (*blocks)(const Options&) = nullptr;
-  /// Of measures of fields: what the rows of all fields come to.
+  /// What the rows of all fields come to, for measures of fields.
   std::vector<Record> (*conclusions)(const Experiment&, const Options&, const std::vector<Row>& rows) = nullptr;
 };
 

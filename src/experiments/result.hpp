@@ -31,7 +31,7 @@ struct Provenance {
 /// What decides about the bytes of rows besides the experiment: version, commit, compiler, flags, cpu.
 nlohmann::ordered_json build_identity();
 
-/// That, and how and when.
+/// The build's identity, and how and when it ran.
 nlohmann::ordered_json to_json(const Provenance& provenance);
 
 /// What a result says of a field: size, range of the data, file.

@@ -32,7 +32,7 @@ Certified read_truth(const JsonReader& json) {
           json.at("error_bound").number(0)};
 }
 
-/// Of the vectors what a score needs: their answers are still to come.
+/// What a score needs of the vectors: their answers are still to come.
 std::vector<ScoredVector> read_vectors(const std::string& path) {
   const JsonReader document = JsonReader::from_file(path);
   document.at("raytruth").word({"vectors/1"});

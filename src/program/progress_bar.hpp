@@ -6,7 +6,7 @@
 
 namespace raytruth {
 
-/// On standard error, if that is a terminal: what is done, what is being done, the time it took and will take.
+/// A bar on standard error, if that is a terminal: what is done, what is being done, the time it took and will take.
 class ProgressBar {
  public:
   explicit ProgressBar(std::size_t total);

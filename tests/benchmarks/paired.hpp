@@ -44,7 +44,8 @@ struct Peer {
   std::function<double()> work;
 };
 
-/// The same against the fastest of several peers, which the label names; `speedup_over_<name>` for each of them.
+/// Times the subject against the fastest of several peers, which the label names; `speedup_over_<name>` for each of
+/// them.
 template <class Subject>
 void run_against_fastest(benchmark::State& state, Subject&& subject, const std::vector<Peer>& peers) {
   double subject_seconds = 0;

@@ -33,7 +33,7 @@ namespace {
 
 using benchmarks::Peer;
 
-/// Of the Bernstein form with these coefficients, of u^0, u^1, ...
+/// The coefficients of u^0, u^1, ... of the Bernstein form with these ones.
 template <class Real>
 std::array<Real, 4> powers_of(const std::array<Real, 4>& b) {
   return {b[0], 3 * (b[1] - b[0]), 3 * ((b[2] - b[1]) - (b[1] - b[0])),
@@ -62,7 +62,7 @@ struct Integrand {
   Real depth;
 };
 
-/// To some 18 digits.
+/// The integral to some 18 digits.
 double truth_of(const LinearPiece<3>& piece) {
   const Integrand<long double> integrand(piece);
   constexpr int parts = 16;
@@ -128,8 +128,8 @@ double largest_error(const Pieces& pieces, Quadrature&& quadrature) {
   return largest;
 }
 
-/// Of the quadratures with tolerances 1e-3, 1e-4, ... 1e-15 that are as accurate as asked for, the one with the fewest
-/// evaluations.
+/// The quadrature with the fewest evaluations, of those with tolerances 1e-3, 1e-4, ... 1e-15 that are as accurate as
+/// asked for.
 class Choice {
  public:
   Choice(const Pieces& pieces, double accuracy) : pieces_(pieces), accuracy_(accuracy) {}

@@ -58,7 +58,7 @@ double for_each_entry(Table3<float>& table, const Entry& entry) {
   return static_cast<double>(table.values.back());
 }
 
-/// Through the three scalars of an entry at t = 0, 1/2 and 1.
+/// The parabola through the three scalars of an entry at t = 0, 1/2 and 1.
 struct Parabola {
   float a, b, front;
 

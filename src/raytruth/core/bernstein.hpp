@@ -10,10 +10,11 @@
 
 namespace raytruth {
 
-/// a at u = 0, b at u = 1, both exactly; constant data stay constant; the error is below 1.5 ulp of max(|a|, |b|).
+/// The line from a at u = 0 to b at u = 1, exact at both ends; constant data stay constant; the error is below 1.5 ulp
+/// of max(|a|, |b|).
 template <class Real>
 Real interpolate(const Real& a, const Real& b, const Real& u) {
-  // From the nearer end. Two selections and no branch: loops over this become vector code.
+  // It counts from the nearer end, by two selections and no branch: loops over this become vector code.
   const bool near_a = u < Real(0.5);
   const Real weight = near_a ? u : Real(u - Real(1));
   return (near_a ? a : b) + weight * (b - a);
@@ -89,7 +90,7 @@ struct Bernstein {
     return sum / Real(Degree + 1);
   }
 
-  /// The same polynomial written in a higher degree.
+  /// This polynomial, written in a higher degree.
   template <int Higher>
   [[nodiscard]] Bernstein<Higher, Real> elevated() const {
     static_assert(Higher >= Degree);

@@ -10,7 +10,7 @@ namespace raytruth {
 /// are no UTF-8 as '?'.
 std::string one_line(std::string_view text);
 
-/// At most `longest` bytes of it, cut between characters and marked with "..." where something is left out.
+/// The text cut to at most `longest` bytes, between characters, and marked with "..." where something is left out.
 std::string shortened(std::string_view text, std::size_t longest = 60);
 
 /// The word of `allowed` that is nearest to `found` if it is likely to be meant (a third of its letters and
@@ -18,7 +18,7 @@ std::string shortened(std::string_view text, std::size_t longest = 60);
 template <class Words>
 std::string_view closest_word(std::string_view found, const Words& allowed);
 
-/// Insertions, deletions and replacements of letters that turn one word into the other (Levenshtein).
+/// How many insertions, deletions and replacements of letters turn one word into the other (Levenshtein).
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
 template <class Words>

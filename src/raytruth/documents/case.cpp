@@ -48,7 +48,7 @@ void read_piecewise_polynomial(const JsonReader& json, Case& ray) {
   ray.signal = std::move(chain);
 }
 
-/// Its origin, direction and length; the direction is checked.
+/// The origin, direction and length of a ray; the direction is checked.
 Ray read_ray(const JsonReader& json) {
   Ray ray{.origin = read_place(json.at("origin")), .direction = read_place(json.at("direction"))};
   json.at("direction").blame_for([&ray] { return unit_direction(ray.direction); });
@@ -222,7 +222,7 @@ Case CaseReader::read(const JsonReader& json, std::vector<std::string>& warnings
   Case ray{json, read_sampling(json.at("sampling")), read_schemes(json.at("schemes"), scheme_names()), std::nullopt};
   if (const auto transfer = json.find("transfer_function")) ray.transfer = read_transfer_function(*transfer, warnings);
   ray.emission = read_emission(json);
-  // It refuses numbers that it cannot calculate with.
+  // RayIntegral refuses numbers that it cannot calculate with.
   if (ray.transfer) json.at("transfer_function").blame_for([&] { return RayIntegral(*ray.transfer, ray.emission); });
   if (kind == "trilinear")
     read_trilinear(signal, ray, warnings);

@@ -237,7 +237,7 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   scene.camera = read_camera(json.at("camera"), scene.grid);
   const JsonReader transfer = json.at("transfer_function");
   scene.transfer = read_transfer(transfer, options, result, scene.grid);
-  // It refuses numbers that it cannot calculate with.
+  // RayIntegral refuses numbers that it cannot calculate with.
   transfer.blame_for([&] { return RayIntegral(scene.transfer, scene.emission); });
   return result;
 }

@@ -116,7 +116,7 @@ SlabCase read_slab_case(const JsonReader& json, std::vector<std::string>& warnin
                   .emission = read_emission(json),
                   .lighting = read_lighting(json.at("lighting")),
                   .schemes = read_schemes(json.at("schemes"), names_of(catalogue::shadings()))};
-  // It refuses numbers that no reference can enclose.
+  // RayIntegral refuses numbers that no reference can enclose.
   json.at("transfer_function").blame_for([&] { return RayIntegral(result.transfer, result.emission); });
   return result;
 }

@@ -16,7 +16,7 @@ std::array<float, 3> to_float(const std::array<double, 3>& point) {
   return {static_cast<float>(point[0]), static_cast<float>(point[1]), static_cast<float>(point[2])};
 }
 
-/// As the shader reads them.
+/// The scene's numbers as the shader reads them.
 std::map<std::string, GlUniform> uniforms(const TexturedScene& scene) {
   const Camera& camera = scene.camera;
   std::map<std::string, GlUniform> result{

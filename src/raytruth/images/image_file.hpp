@@ -24,7 +24,7 @@ enum class Transfer8Bit {
 /// Throws InputError for other extensions.
 std::string image_file(const Image& image, std::string_view extension, Transfer8Bit transfer = Transfer8Bit::srgb);
 
-/// The same .npy of a number for each pixel, binary64, shape (height, width).
+/// The bytes of a .npy file with one number for each pixel: binary64, shape (height, width).
 std::string number_file(const std::vector<double>& numbers, const std::array<std::int64_t, 2>& size);
 
 /// Reads .png (8 or 16 bits per channel, grey or colour: the stored values over the largest, whatever they encode;

@@ -39,14 +39,14 @@ inline FloatLanes load_in_places(const float* from) { return shuffled(FloatLanes
 /// bits, which hold a texel; the shuffles are those that processors have.
 inline void store_texels(const LaneSlab& slab, float* to) {
   constexpr auto lanes = std::make_index_sequence<float_lane_count>{};
-  // Of every quarter, two numbers of a and of b: a b a b, from its lower half or from its upper one.
+  // Takes two numbers of a and of b from every quarter: a b a b, from its lower half or from its upper one.
   const auto mix = [&](const FloatLanes& a, const FloatLanes& b, auto half) {
     return shuffle(
         a, b,
         [](std::size_t i) { return i / 4 * 4 + decltype(half)::value * 2 + i % 4 / 2 + i % 2 * float_lane_count; },
         lanes);
   };
-  // Of every quarter, the lower (or upper) halves of a and of b.
+  // Takes the lower (or upper) halves of a and of b from every quarter.
   const auto join = [&](const FloatLanes& a, const FloatLanes& b, auto half) {
     return shuffle(
         a, b,
@@ -97,9 +97,9 @@ class Band {
     offsets_ = FloatLanes::load(offsets.data());
   }
 
-  /// By subranges whose bins, of `first_width` intervals, all lanes share. The ranges that end in the row of entry j
-  /// begin in lane l at j - first_width - offset(l); so the scan of the parts before a bin's border is skewed by the
-  /// lanes, that of the parts behind it is not.
+  /// Works by subranges whose bins, of `first_width` intervals, all lanes share. The ranges that end in the row of
+  /// entry j begin in lane l at j - first_width - offset(l); so the scan of the parts before a bin's border is skewed
+  /// by the lanes, that of the parts behind it is not.
   /// Among the shortest ranges the scans to many borders meet the same interval: its exponentials are made once.
   void run(float* buffer, float* const* tables) const {
     using State = typename Algebra::State;
@@ -174,7 +174,7 @@ class Band {
     return result;
   }
 
-  /// Of intervals `steps` behind the border, less the lane's offset, only those before it.
+  /// Keeps only the intervals before the border: they are `steps` behind it, less the lane's offset.
   template <class Crossing>
   void leave_out_behind(std::ptrdiff_t steps, Crossing& crossing) const {
     for (FloatLanes& number : crossing)

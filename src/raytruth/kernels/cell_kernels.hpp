@@ -16,8 +16,8 @@ struct CellLight {
 };
 
 /// So many nodes for cells whose largest extinction times their length is at most `deepest`. Gauss's rule of n nodes is
-/// exact to degree 2n - 1; by parts, with O = Q - Q^2/2 + ..., light has terms of degree 6, 10, 14, ... Of any cubic in
-/// [0, 1] both rules miss less than 2^-22 of the light (a test tries random and extreme ones), far less where it is
+/// exact to degree 2n - 1; by parts, with O = Q - Q^2/2 + ..., light has terms of degree 6, 10, 14, ... For any cubic
+/// in [0, 1] both rules miss less than 2^-22 of the light (a test tries random and extreme ones), far less where it is
 /// smooth.
 struct CellRule {
   double deepest;
@@ -28,7 +28,7 @@ inline constexpr CellRule thick_cell{4, 9};
 
 /// The inner loop of a renderer that integrates the cubics of cells, in the version for one level of x86-64.
 struct CellKernels {
-  /// By Gauss's rule of `nodes` nodes, of depths up to 600; `x_error` is not looked at.
+  /// Integrates by Gauss's rule of `nodes` nodes, depths up to 600; `x_error` is not looked at.
   CellLight (*integrate)(const LinearPiece<3, Eight>& cells, bool associated, std::size_t nodes);
 };
 

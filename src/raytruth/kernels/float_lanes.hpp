@@ -110,7 +110,7 @@ inline constexpr __mmask16 all_lanes = 0xFFFF;  // without a mask GCC 12 warns o
 /// 1 / x for normal x > 0, to 2 units in the last place.
 inline FloatLanes reciprocal(const FloatLanes& x) {
 #if defined(__AVX512F__)
-  // From 14 bits by one step of Newton's method: several times faster than the division.
+  // It takes 14 bits and one step of Newton's method: several times faster than the division.
   const FloatLanes y = FloatLanes::of(FloatLanes::Vector(_mm512_maskz_rcp14_ps(all_lanes, __m512(x.vector))));
   return multiply_add(y, multiply_add(FloatLanes(0.0F) - x, y, FloatLanes(1.0F)), y);
 #else
@@ -151,8 +151,9 @@ inline FloatLanes exponential_slope(const FloatLanes& r) {
 /// Opacities are small where an interval is a small part of a slab: up to this t no reduction is needed.
 inline constexpr float thin_interval = 0.5F;
 
-/// 1 - 2^-t for t >= 0, infinity too, or, IsThin, for 0 <= t <= thin_interval. With n the integer next to -t and r = -t
-/// - n, 1 - 2^n 2^r = (1 - 2^n) - 2^n r p(r) keeps the digits of small opacities too. Beyond t = 126 the opacity is 1.
+/// 1 - 2^-t for t >= 0, infinity too, or, IsThin, for 0 <= t <= thin_interval. With n the integer next to -t and
+/// r = -(t + n), 1 - 2^n 2^r = (1 - 2^n) - 2^n r p(r) keeps the digits of small opacities too. Beyond t = 126 the
+/// opacity is 1.
 template <bool IsThin>
 FloatLanes opacity_of(const FloatLanes& t) {
   if constexpr (IsThin) return t * exponential_slope(FloatLanes(0.0F) - t);

@@ -27,7 +27,7 @@ RAYTRUTH_DECLARE_KERNELS
 
 namespace {
 
-/// Those of the three versions that this processor can run, the best one first.
+/// The versions, of the three, that this processor can run, the best one first.
 template <class Found>
 std::vector<const Found*> find_versions(const Found& baseline_version, [[maybe_unused]] const Found* v3_version,
                                         [[maybe_unused]] const Found* v4_version) {

@@ -42,7 +42,7 @@ struct Kernels {
   /// One piece, its nodes side by side. `nodes` above most_nodes: too deep to be done in one go.
   PieceIntegral<> (*integrate_one)(const LinearPiece<Degree>&, bool associated);
 
-  /// The same, one node after the other.
+  /// One piece, one node after the other.
   PieceIntegral<> (*integrate_scalar)(const LinearPiece<Degree>&, bool associated);
 
   /// Eight pieces side by side; each may be too deep by itself.

@@ -142,7 +142,7 @@ inline bool any(const LaneBits& which) {
   return (bits[0] | bits[1]) != 0;
 }
 
-/// All lanes in one, by halves.
+/// Combines all lanes into one number, by halves.
 template <class Combine>
 double combined(const Lanes& x, const Combine& combine) {
   const auto& v = x.vector;

@@ -19,8 +19,9 @@ struct LinearPiece {
 
 /// The certified integrals of a piece, T(u) = exp(-length integral_0^u tau):
 ///
-///     weight_0 = length integral (1 - x) r T du,  weight_1 = length integral x r T du,  depth = length integral tau
-///     du,
+///     weight_0 = length integral (1 - x) r T du,
+///     weight_1 = length integral x r T du,
+///     depth    = length integral tau du,
 ///
 /// r = tau for associated emission, 1 for plain; so the colour is c_0 weight_0 + c_1 weight_1, c_0 and c_1 those of
 /// x = 0 and x = 1.

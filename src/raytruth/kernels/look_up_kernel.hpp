@@ -53,7 +53,7 @@ inline FloatLanes two_pairs(const float* ray, const float* next_ray) {
   return FloatLanes::of(__builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
 }
 
-/// The same in a register's first four places; GCC shuffles 128 bits into 512 by way of memory.
+/// The four numbers in a register's first four places; GCC shuffles 128 bits into 512 by way of memory.
 inline FloatLanes::Vector widened(const FourFloats& x) { return FloatLanes::Vector(_mm512_castps128_ps512(__m128(x))); }
 
 inline FloatLanes look_up(const std::array<const float*, 4>& texels, std::size_t row, const FourFloats& front,

@@ -11,7 +11,7 @@ class MomentAlgebra {
  public:
   using State = std::array<FloatLanes, 17>;    ///< four channels of each moment, and the opacity
   using Crossing = std::array<FloatLanes, 4>;  ///< opacity, and moments 1 to 3 of an interval about its front
-  // Fewer than for one table: rows lie 4 KiB apart, and share few lines of the cache.
+  // These are fewer than for one table: rows lie 4 KiB apart, and share few lines of the cache.
   static constexpr std::ptrdiff_t rows_ahead = 8;
 
   explicit MomentAlgebra(const FloatLanes& shares) {
@@ -25,13 +25,13 @@ class MomentAlgebra {
     const FloatLanes opacity = opacity_of<IsThin>(t);
     const FloatLanes y = t * powers_[0];
     const FloatLanes transmittance = FloatLanes(1.0F) - opacity;
-    // Downwards from J_3 = sum of (-y)^m / (m! (m + 4)).
+    // The recurrence goes downwards from J_3 = sum of (-y)^m / (m! (m + 4)).
     FloatLanes third(series.back());
     for (std::size_t m = series.size() - 1; m-- > 0;) third = multiply_add(y, third, FloatLanes(series[m]));
     FloatLanes second = multiply_add(y, third, transmittance) * (1.0F / 3);
     FloatLanes first = multiply_add(y, second, transmittance) * 0.5F;
     if constexpr (!IsThin) {
-      // Upwards, where that loses little: errors grow by 3 / y at most.
+      // The recurrence goes upwards where that loses little: errors grow by 3 / y at most.
       const FloatLanes inverse = FloatLanes::of(FloatLanes(1.0F).vector / y.vector);
       const FloatLanes first_up = (opacity * inverse - transmittance) * inverse;
       const FloatLanes second_up = (first_up + first_up - transmittance) * inverse;

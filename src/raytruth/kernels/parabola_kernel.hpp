@@ -30,7 +30,7 @@ struct ParabolaCrossing {
   FloatLanes mean_from_above;
 };
 
-/// By a Gauss-Legendre rule in u, in which all is smooth, even where the parabola turns.
+/// Crosses by a Gauss-Legendre rule in u, in which all is smooth, even where the parabola turns.
 inline ParabolaCrossing cross_by_nodes(const ParabolaInterval& interval, const FloatLanes& depth,
                                        const NodeTable<3>& rule) {
   constexpr float log2_e = 0x1.715476p0F;
@@ -52,8 +52,9 @@ inline ParabolaCrossing cross_by_nodes(const ParabolaInterval& interval, const F
   return crossing;
 }
 
-/// By the moments of the depth d(x) seen on the way: their first one is exact, and gives the skew kappa; the higher
-/// ones are those of the parabola d x + e x (1 - x) of this skew. To 6e-4 d^4 + 5e-3 d^2 |g| for |g| <= 1/4.
+/// Crosses by the moments of the depth d(x) seen on the way: the first one is exact, and gives the skew kappa; the
+/// higher ones are those of the parabola d x + e x (1 - x) of this skew. The error is at most 6e-4 d^4 + 5e-3 d^2 |g|
+/// for |g| <= 1/4.
 inline ParabolaCrossing cross_by_moments(const FloatLanes& depth, const FloatLanes& skew) {
   // (1 - exp(-d)) / d
   FloatLanes even = multiply_add(depth, FloatLanes(1.0F / 120), FloatLanes(-1.0F / 24));
@@ -110,7 +111,7 @@ class ParabolaLanes {
     const FloatLanes below_top = FloatLanes::of(__builtin_convertvector(entry, FloatLanes::Vector));
     start_ = select(turns_, smaller(below_top, FloatLanes(last)), lower_ + height);
 
-    // By moments where the depth is at most 0.2, and depth^2 |g| at most 10^-4.
+    // Moments will do where the depth is at most 0.2, and depth^2 |g| at most 10^-4.
     const float most = transfer.most_rate;
     const FloatLanes speed_squared =
         larger(FloatLanes(6.25F * most * most), square_root(larger(bow, FloatLanes(1e-3F)) * 5000.0F) * most);
@@ -144,7 +145,7 @@ class ParabolaLanes {
   static constexpr float most_of_16_nodes = 24;
 
   [[nodiscard]] FloatLanes speed_squared(std::int32_t entry) const {
-    // Not 0, which has no inverse square root.
+    // It must not be 0, which has no inverse square root.
     return larger(multiply_add(eight_bows_, lower_ - FloatLanes(static_cast<float>(entry)), first_speed_squared_),
                   FloatLanes(1e-30F));
   }
@@ -168,8 +169,8 @@ class ParabolaLanes {
     return cross_by_nodes(interval, depth, node_table<3>(nodes));
   }
 
-  /// From the last entry below the turning point up to that point: half of it, since slabs_ holds either side. Beyond
-  /// the last entry of all the optics are constant; and so they are in all of a constant slab.
+  /// Crosses from the last entry below the turning point up to that point: half of it, since slabs_ holds either side.
+  /// Beyond the last entry of all the optics are constant, and so they are in all of a constant slab.
   void turn() {
     if (lane_mask(turns_ | is_constant_) == 0) return;
     const FloatLanes squared = multiply_add(eight_bows_, lower_ - start_, first_speed_squared_);
@@ -191,7 +192,7 @@ class ParabolaLanes {
     slabs_.go_on(crossing, difference);
   }
 
-  /// The intervals from one entry down to another, in lanes that have begun and not reached their lower end.
+  /// Crosses the intervals from one entry down to another, in lanes that have begun and not reached their lower end.
   void go_down(std::int32_t from, std::int32_t to) {
     const auto fast_from = static_cast<std::int32_t>(fast_below_);
     FloatLanes upper_speed = square_root(speed_squared(from));

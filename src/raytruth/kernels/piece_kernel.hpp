@@ -48,7 +48,7 @@ constexpr double log2_e_above = 1.4426951;      // rounded up
 template <int Degree>
 constexpr double depth_units = Degree + 10;
 
-/// The same of the exponent at a node: the factor -log2(e), 2; the basis and the sum of products, Degree + 2.
+/// Rounding of the exponent at a node, relative: the factor -log2(e), 2; the basis and the sum of products, Degree + 2.
 template <int Degree>
 constexpr double exponent_units = depth_units<Degree> + Degree + 4;
 
@@ -226,7 +226,7 @@ Vector nodes_for(const LinearPiece<Degree, Vector>& piece, const Prepared<Degree
   const Vector half = 0.5 * piece.length;
   const Vector half_slope = half * (piece.extinction_at_1 - piece.extinction_at_0);
   const Vector half_extinction = half * piece.extinction_at_0;
-  // By rounding; of the coefficients of x' by at most Degree (Degree + 1) times that.
+  // Coefficients are off by so much through rounding, those of x' by at most Degree (Degree + 1) times that.
   const Vector uncertainty = (4.0 * Degree + 8) * unit_roundoff * prepared.reach;
   const Vector depth_uncertainty = (magnitude(half_slope) + half_extinction) * uncertainty;
 
@@ -259,7 +259,7 @@ Vector nodes_for(const LinearPiece<Degree, Vector>& piece, const Prepared<Degree
       for (std::size_t k = 0; k < Degree; ++k)
         largest = multiply_add(Vector(magnitude(rate[k])), Vector(a[k]), largest);
       largest += uncertainty * (Degree * (Degree + 1) * ellipse.chebyshev_sum);
-      // No less, for the integral of O by the same nodes is to have some 20 bits.
+      // It is no less, for the integral of O by the same nodes is to have some 20 bits.
       largest = larger<Vector>(largest, least_rate_share);
       const Vector depth = (magnitude(kappa[0]) + first) + (magnitude(second) + others);
       largest *= smaller<Vector>(1, multiply_add(Vector(0.5 * depth), depth, Vector(smallest_summand)));
@@ -272,8 +272,8 @@ Vector nodes_for(const LinearPiece<Degree, Vector>& piece, const Prepared<Degree
     const Vector log2_largest = multiply_add(Vector(log2_e_above), exponent, log2_above(largest));
     nodes = smaller(nodes, Vector((log2_largest + (ellipse.log2_factor - log2_goal)) * ellipse.nodes_per_bit));
   }
-  // As an integer, by way of the magic number; the half makes up for rounding to nearest. So many at least integrate
-  // x' Q, of degree 2 Degree, exactly.
+  // The number is made an integer by way of the magic number; the half makes up for rounding to nearest. Degree + 1
+  // nodes at least integrate x' Q, of degree 2 Degree, exactly.
   return (larger<Vector>(Degree + 1, nodes) + 0.5 + round_to_integer) - round_to_integer;
 }
 
@@ -382,7 +382,8 @@ Weights<Vector> weights_of(const LinearPiece<Degree, Vector>& piece, const Prepa
   const Vector rate_error = (Degree + 4) * unit * opacities + exponent_unit * depth_below * transmitted;
   const Vector opacity_error = (PowerOf2<Vector>::error_less_1 + 4 * unit) * opacity_size +
                                exponent_unit * (depth + depth_below) * transmittance.value();
-  // By x, by tau and by T, whose errors meet the integrals of tau T, of T, and of tau T u, above neither.
+  // The error that comes from x, from tau and from T: these errors meet the integrals of tau T, of T, and of tau T u,
+  // which is above neither of them.
   const Vector growth = 1 + 2 * depth_from_x;
   const Vector negative = 2 * growth * below * piece.length * transmitted;
   const Vector from_x = piece.x_error * (opacity_size + negative + 8 * depth_from_x * (1 + transmitted)) +
@@ -401,8 +402,8 @@ Weights<Vector> weights_of(const LinearPiece<Degree, Vector>& piece, const Prepa
   const Vector depth_sum = 3 * depth_below * transmitted - std::numbers::ln2 * sums.exponent;
   const Vector sum_error = transmitted * (PowerOf2<Vector>::error + (additions + (Degree + 17)) * unit) +
                            exponent_units<Degree> * unit * depth_sum;
-  // By x and by T; the integral of T u du is at most half of that of T where T falls, exp(depth_below) times that
-  // where it need not.
+  // The error that comes from x and from T: the integral of T u du is at most half of that of T where T falls, and
+  // exp(depth_below) times that where it need not.
   const auto share = smaller<Vector>(1, 0.5 + depth_below);
   const Vector from_x = transmitted * (1 + 2 * depth_from_x) * (piece.x_error + reach * share * depth_from_x);
   return {piece.length * (transmitted - sums.light), piece.length * sums.light,
@@ -414,7 +415,8 @@ PieceIntegral<Vector> finish(const LinearPiece<Degree, Vector>& piece, const Pre
                              const Weights<Vector>& weights, bool associated, const Vector& log2_truncation) {
   const Vector depth_rounding = depth_units<Degree> * unit_roundoff * (prepared.depth + 2 * prepared.depth_below);
   const Vector depth_error = rounding_slack * (depth_rounding + prepared.depth_from_x);
-  // An error of the depth above 1, a sum out of range: the integrals of tau T and T are at most 1 and length.
+  // This holds for an error of the depth above 1, and for a sum out of range: the integrals of tau T and T are at most
+  // 1 and length.
   const Vector most = associated ? Vector(1) : piece.length;
   const Vector crude = magnitude(weights.weight_0) + magnitude(weights.weight_1) + most * prepared.reach;
   const Vector error = weights.error + power_of_2_above(log2_truncation);

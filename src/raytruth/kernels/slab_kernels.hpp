@@ -52,8 +52,8 @@ struct SlabKernels {
   void (*march_four)(const SlabTable&, const float* scalars, std::size_t slabs, float* rays);
 
   /// The slabs of second order of all front entries at one middle and one back entry, homogeneous steps front to back,
-  /// into a row of RGBA; scalars beyond the entries are clamped to them. Rates are tau log2(e) times a step, so that 1
-  /// - 2^-rate is the step's opacity.
+  /// into a row of RGBA; scalars beyond the entries are clamped to them. Rates are tau log2(e) times a step, so that
+  /// the opacity of a step is 1 - 2^-rate.
   void (*second_order_row)(const TransferEntries&, const SecondOrderSteps&, std::size_t middle, std::size_t back,
                            float* row);
 

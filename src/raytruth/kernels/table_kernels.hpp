@@ -27,7 +27,7 @@ struct TableKernels {
   /// axis, and for band_width more.
   void (*subranges)(const TableIntervals&, std::size_t first_width, bool backwards, float* buffer, float* const* table);
   static constexpr std::size_t slab_floats = 5;
-  /// The same into four tables, of moments k = 0 to 3 (tables/moments.hpp), with `moment_floats`.
+  /// Those entries of four tables, of moments k = 0 to 3 (tables/moments.hpp), with `moment_floats`.
   void (*moments)(const TableIntervals&, std::size_t first_width, bool backwards, float* buffer, float* const* tables);
   static constexpr std::size_t moment_floats = 21;
 };

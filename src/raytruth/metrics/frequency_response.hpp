@@ -23,8 +23,8 @@ struct ReconstructionPath {
 /// Zero exactly at whole frequencies but 0; elsewhere within 64 epsilon.
 std::complex<double> frequency_response(const ReconstructionPath& path, double frequency);
 
-/// The same measured: an impulse in a voxel grid, traced, sampled and interpolated by the code that everything else
-/// here uses, then read at equal steps.
+/// The transform, measured: an impulse in a voxel grid is traced, sampled and interpolated by the code that everything
+/// else here uses, and then read at equal steps.
 class ImpulseResponse {
  public:
   /// Throws InputError unless samples_per_voxel > 2.

@@ -96,7 +96,7 @@ StretchLight integrate(const Stretch& stretch, Emission emission, std::int64_t& 
   const bool is_associated = emission == Emission::associated;
   const bool is_homogeneous = stretch.extinction.size() <= 1;
 
-  // Of q T, for a colour of 1 and for a colour of the weight.
+  // The integrals of q T, for a colour of 1 and for a colour of the weight.
   const Polynomial density = is_associated ? stretch.length * stretch.extinction : Polynomial(stretch.length);
   const Ball scale = is_associated ? opacity : Ball(1.0) < total ? stretch.length / total : stretch.length;
   const Ball of_one = is_associated    ? opacity

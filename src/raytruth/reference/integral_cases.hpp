@@ -24,8 +24,8 @@ enum class SignalShape { random, constant, tangent, level, short_pieces };
 inline constexpr std::array<std::string_view, 5> signal_shapes{"random", "constant", "tangent", "level",
                                                                "short_pieces"};
 
-/// Of the transfer function: a ramp, a tent of width 0.02, a box, a step, an isoslab of width 1/256, a random table of
-/// 257 points, random points, random points of which each is a jump.
+/// What the transfer function is: a ramp, a tent of width 0.02, a box, a step, an isoslab of width 1/256, a random
+/// table of 257 points, random points, random points of which each is a jump.
 enum class TransferShape { ramp, tent, box, step, isoslab, table, points, jumps };
 inline constexpr std::array<std::string_view, 8> transfer_shapes{"ramp",    "tent",  "box",    "step",
                                                                  "isoslab", "table", "points", "jumps"};

@@ -12,7 +12,7 @@ inline constexpr double opaque_depth = 92;
 template <int Degree>
 PieceIntegral<> integrate(const LinearPiece<Degree>& piece, Emission emission);
 
-/// The same, one node after the other.
+/// One piece of any depth, certified; one node after the other.
 template <int Degree>
 PieceIntegral<> integrate_scalar(const LinearPiece<Degree>& piece, Emission emission);
 

@@ -33,9 +33,9 @@ struct Outside {
   bool is_settled = true;  ///< halving the stretch would not help
 };
 
-/// Beyond one end of the interval. For degrees n >= 3, e and f the excess at the two ends, g what is inside,
-/// x(u) >= -e (1-u)^n - f u^n + g (1 - (1-u)^n - u^n) and (1-u)^n + u^n <= 1 - 3 u (1-u), so for max(e, f) <= g/64 x is
-/// negative on at most (e + f) / (2.9 g) of the stretch.
+/// How wrong they are beyond one end of the interval. For degrees n >= 3, e and f the excess at the two ends, g what is
+/// inside, x(u) >= -e (1-u)^n - f u^n + g (1 - (1-u)^n - u^n) and (1-u)^n + u^n <= 1 - 3 u (1-u), so for max(e,
+/// f) <= g/64 x is negative on at most (e + f) / (2.9 g) of the stretch.
 Outside beyond(const IntervalEnd& end, double at_begin, double at_end, double inside, const LinearInterval& interval,
                const LinearIntervals& intervals) {
   const double e = std::max(0.0, -at_begin);
@@ -207,7 +207,7 @@ void RayIntegral::Parts::accept_or_halve(const Piece<Degree>& piece, double sign
     const double stretch_outside = slack * length * outside.share;
     const double color = interval.most_color + outside.color;
     depth_error += stretch_outside * outside.extinction;
-    // The source there, and all that is seen through the stretch.
+    // Two things may be wrong: the source there, and all that is seen through the stretch.
     if (emission_ == Emission::associated)
       color_error += stretch_outside * (2 * outside.extinction * color + interval.most_extinction * outside.color);
     else
@@ -293,7 +293,8 @@ Certified RayIntegral::Parts::finish(const Sum& sum, double length, double hidde
   const double summation = (2 + 2 * count * count * unit_roundoff) * unit_roundoff;
   const double color_error = sum.color_error + summation * brightest +
                              std::min(1.0, transmittance + drift) * density * error.of_length +
-                             // Anywhere on the ray: the source there, and what is seen through it.
+                             // Two things may be wrong, anywhere on the ray: the source there, and what is seen through
+                             // it.
                              density * (associated ? 2 : 1 + length * most_extinction) * error.unclaimed +
                              most_hidden * (associated ? most_color : most_color * hidden);
   const double opacity_error = drift + most_hidden + 4 * unit_roundoff * result.opacity;

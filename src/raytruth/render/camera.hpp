@@ -36,8 +36,8 @@ struct PixelRay {
   double length_unit = 1;  ///< of one t of the ray, in smallest spacings: the unit of steps and of extinctions' lengths
 };
 
-/// From pixels to rays. With f, r, u the unit vectors forward, right and up, a the image's width over its height, and h
-/// half its height (orthographic) or tan(fov_y / 2) (perspective), the pixel's centre has
+/// Makes rays of pixels. With f, r, u the unit vectors forward, right and up, a the image's width over its height, and
+/// h half its height (orthographic) or tan(fov_y / 2) (perspective), the pixel's centre has
 ///     x = a h (2 (column + 1/2) / width - 1),  y = h (1 - 2 (row + 1/2) / height),
 /// row 0 being the topmost; its ray is
 ///     eye + x r + y u + t f   (orthographic)   or   eye + t (f + x r + y u)   (perspective).

@@ -29,7 +29,7 @@ void refuse_far_cameras(const Scene& scene, const CameraView& view) {
           throw InputError(fmt::format("a ray from voxel coordinate {}; magnitudes up to 2^30 are allowed", x));
 }
 
-/// Of the grid, in smallest spacings.
+/// The diagonal of the grid, in smallest spacings.
 double diagonal(const Grid& grid) {
   const auto& [x, y, z] = grid.spacing;
   return std::hypot(x * static_cast<double>(grid.size[0]), y * static_cast<double>(grid.size[1]),

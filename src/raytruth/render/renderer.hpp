@@ -14,8 +14,8 @@ namespace raytruth {
 /// What a renderer makes of a scene.
 struct Rendering {
   Image image;
-  /// Of `reference`, in every pixel: a proven bound on the error of each channel and of the opacity if `is_certified`,
-  /// else the measured one, by how much two quadratures differ (LitIntegral). Of other schemes empty.
+  /// For `reference`, in every pixel: a proven bound on the error of each channel and of the opacity if `is_certified`,
+  /// else the measured one, by how much two quadratures differ (LitIntegral). Empty for other schemes.
   std::vector<double> radii = {};
   bool is_certified = false;
   std::int64_t not_converged = 0;  ///< pixels whose radius is wider than was asked for; it holds
@@ -24,10 +24,9 @@ struct Rendering {
 /// Makes images of a scene: prepares it once, renders on all cores, the same bytes on any number of them.
 ///
 /// Schemes see the exact polynomials along the ray, sampled as the scene says. `reference` is the certified integral
-/// for the pixel's ray and length unit as rounded to binary64; with shading it is converged, not certified (ShadedRay).
-/// It neither skips space nor ends early. Two schemes without shading have
-/// a way of their own through a trilinear grid: `order1` with a table and equal steps, in binary32 (TableMarch); and
-/// `cell_cubic` (CellMarch).
+/// for the ray and the length unit of the pixel as rounded to binary64; with shading it is converged, not certified
+/// (ShadedRay). It neither skips space nor ends early. Two schemes without shading have a way of their own through a
+/// trilinear grid: `order1` with a table and equal steps, in binary32 (TableMarch); and `cell_cubic` (CellMarch).
 class Renderer {
  public:
   /// Throws InputError for what the scene cannot be rendered with, with what is wrong but without a place.

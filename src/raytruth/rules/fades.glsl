@@ -1,10 +1,10 @@
 // Guetat's three cases: what becomes of a cubic that goes below 0 between front and back (Guetat 2010, sections 5.1
 // and 5.2). Both ends lit: its integral; one end dark: a fade from the light of the other one; both dark: nothing.
 //
-// `moments` as in lighting.glsl; `cubic` are its coefficients, `front` and `back` its values at the ends. Diffuse light:
-// of the arc that quadratic_arc gives along L. Highlights: of fades_cone along H. The functions `_printed` do as the
-// paper says: the diffuse fades stand in the opposite order to their conditions; highlights have N.L for N.H, coloured
-// moments in the fades, and 1 - n is not faded, so that they reach 1 - n.
+// `moments` are those of lighting.glsl; `cubic` has the coefficients, `front` and `back` the values at the ends. For
+// diffuse light the cubic is the arc that quadratic_arc gives along L, for highlights it is fades_cone along H. The
+// functions `_printed` do as the paper says: the diffuse fades stand in the opposite order to their conditions;
+// highlights have N.L for N.H, coloured moments in the fades, and 1 - n is not faded, so that they reach 1 - n.
 
 // 1 + n (c - 1) for a cubic cosine c.
 vec4 fades_cone(vec4 cosine, real exponent) {
@@ -36,13 +36,13 @@ real fades_peak(vec4 cubic, real front, real back) {
   return peak > ends ? min(1.0, max(0.0, peak)) : 0.0;
 }
 
-// With the moment I'' of the tent that is 1 half-way: of the fade and the tent up to the peak the larger one.
+// The larger one of the fade and of the tent up to the peak; `tent` is the moment I'' of the tent that is 1 half-way.
 real fades_highlight(vec4 moments, real tent, vec4 cubic, real front, real back) {
   real light = fades_integral(moments, cubic, front, back);
   return front >= 0.0 && back >= 0.0 ? light : max(light, fades_peak(cubic, front, back) * tent);
 }
 
-// `moments` without any density, `colored` those of the matter's colour; N_f.L and N_b.L.
+// `moments` have no density, `colored` have the matter's colour; `light_front` and `light_back` are N_f.L and N_b.L.
 real fades_highlight_printed(vec4 moments, vec4 colored, vec4 cubic, real front, real back, real exponent,
                              real light_front, real light_back) {
   if (front >= 0.0 && back >= 0.0) return lighting_integral(moments, cubic);

@@ -18,7 +18,7 @@ real lighting_integral(vec4 moments, vec4 coefficients) {
          coefficients[3] * moments[3];
 }
 
-// Of light that runs linearly from front to back (Lum 2004, section 3).
+// The light of a slab whose lighting runs linearly from front to back (Lum 2004, section 3).
 real lighting_interpolated(vec4 moments, real front, real back) {
   return front * (moments[0] - moments[1]) + back * moments[1];
 }

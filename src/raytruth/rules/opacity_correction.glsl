@@ -8,13 +8,13 @@ real opacity_correction(real opacity, real ratio) {
   return -expm1(ratio * log1p(-opacity));
 }
 
-// For ratio = 1/2 (Lee 2010, eqs. 10 and 11): again and again for 1/4, 1/8, ... Of a small opacity it keeps an absolute
-// error of half an ulp of 1, doubled in relative terms by every step.
+// Opacity correction for ratio = 1/2 (Lee 2010, eqs. 10 and 11), applied again and again for 1/4, 1/8, ... Its absolute
+// error is half an ulp of 1, so a small opacity loses a bit with every step.
 real opacity_correction_half(real opacity) {
   return 1.0 - sqrt(1.0 - opacity);
 }
 
-// The first order in opacity, clamped: what renderers do that take opacity for extinction.
+// The first order in opacity, clamped: what renderers do if they take opacity for extinction.
 real opacity_correction_linear(real opacity, real ratio) {
   return min(1.0, ratio * opacity);
 }

@@ -123,8 +123,8 @@ Twin difference_twin(Twin twin, double number) {
   return twin;
 }
 
-/// Of a weight or a coefficient that belongs to normals; last comes the cosine of their angle 2a, as which approaches
-/// 180 degrees terms grow like 1 / cos a: `scale` times that.
+/// A weight or a coefficient that belongs to normals. The last argument is the cosine of their angle 2a; as the angle
+/// approaches 180 degrees, terms grow like 1 / cos a: `scale` times that.
 template <class Scale>
 Twin with_normals(Twin twin, Scale&& scale) {
   twin.summand = [scale](std::span<const float> numbers, std::size_t) {
@@ -148,7 +148,7 @@ Twin arc_twin(std::string_view name, Member member, Twin::Bounds bounds) {
                       largest_multiple);
 }
 
-/// Of arguments slab, opacity, ratio: the opacity is the corrected one of the slab.
+/// A function of slab, opacity and ratio: the opacity is the corrected one of the slab.
 Twin corrected_slab_twin(Twin twin) {
   twin.reconcile = [](std::span<float> numbers) {
     const Binary32 corrected = Rules<Binary32>{}.opacity_correction(Binary32(numbers[3]), Binary32(numbers[5]));
@@ -157,7 +157,7 @@ Twin corrected_slab_twin(Twin twin) {
   return twin;
 }
 
-/// Of arguments coordinate, size: half a texel is taken off; tables have two entries or more.
+/// A function of coordinate and size: half a texel is taken off; tables have two entries or more.
 Twin table_share_twin(Twin twin) {
   twin.summand = [](std::span<const float> numbers, std::size_t) {
     return 0.5 / (static_cast<double>(numbers[1]) - 1);

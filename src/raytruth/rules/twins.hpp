@@ -57,9 +57,10 @@ std::size_t number_count(Domain domain);
 template <class Real>
 using TwinValues = std::array<Real, 4>;
 
-/// A function of src/rules that runs in every arithmetic and, the same characters, in shaders: a row of the catalogue.
+/// A function of src/raytruth/rules that runs in every arithmetic and, by the same characters, in shaders: a row of
+/// twins().
 struct Twin {
-  /// How far values may be apart, in units in the last place (see measures/twin_errors.hpp).
+  /// How far values may be apart, in units in the last place (see gl/twin_errors.hpp).
   struct Bounds {
     double gl = 0;        ///< GLSL from binary32
     double rounding = 0;  ///< binary32 from binary64 and, in its own last places, binary64 from 50 digits
@@ -93,7 +94,7 @@ void draw_arguments(const Twin& twin, TwinInputs inputs, std::uint64_t seed, std
 
 namespace catalogue {
 
-/// Every local function of src/rules, in the order of rules.hpp.
+/// Every local function of src/raytruth/rules, in the order of rules.hpp.
 const std::vector<Twin>& twins();
 
 }  // namespace catalogue

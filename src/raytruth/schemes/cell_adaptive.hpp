@@ -21,8 +21,9 @@ std::vector<int> inner_samples(const std::vector<double>& chords, std::int64_t b
 
 /// The approximate signal from such samples: a line, a parabola (rules/order2.glsl) or a cubic (rules/order3.glsl) in
 /// each cell. It has no order in a step: its kinks are the signal's own, and it is exact for trilinear rays from three
-/// samples per cell and one for the end on, when no more are taken. Needs a sample on every border: a smaller budget is
-/// exceeded, and below about 1.2 samples per cell virtual_catmull_rom is better. The number of samples taken.
+/// samples per cell and one for the end on, when no more are taken. It needs a sample on every border: a smaller budget
+/// is exceeded, and below about 1.2 samples per cell virtual_catmull_rom is better. Returns the number of samples
+/// taken.
 template <int Degree>
 std::int64_t approximate_cells(const Chain<Degree>& signal, std::int64_t budget, Chain<3>& approximation);
 

@@ -39,7 +39,7 @@ struct Sampled {
 /// Pre-integration without a table's limits: the approximate signal integrated exactly.
 struct Ideal {};
 
-/// The same, but inside a slab light is not attenuated on its way: C = integral q dt, the opacity as it is (Engel,
+/// Pre-integration that attenuates no light on its way out of a slab: C = integral q dt, the opacity as it is (Engel,
 /// Kraus and Ertl 2001, section 3.2, as El Hajjar 2008 tells it).
 struct WithoutAttenuation {};
 
@@ -61,9 +61,10 @@ using Method = std::variant<Sampled, Ideal, WithoutAttenuation, Iterations, Cell
 /// The slope of log error over log step where signal and transfer function are smooth, at equal steps whose number is a
 /// multiple of 6 (pairs and triples come out even); 0: the scheme has no step to have an order in.
 ///
-/// Of ideal schemes it is one more than that of xi where s - s^ is odd about the middle of every slab to leading order
-/// (order0_mid, order2, virtual_catmull_rom but for two intervals): to first order in s - s^ the error is its integral
-/// under a smooth weight, of which only the slope's part is left, by one power of the step smaller.
+/// For ideal schemes the order is one more than that of xi where s - s^ is odd about the middle of every slab to
+/// leading order (order0_mid, order2, virtual_catmull_rom but for two intervals): to first order in s - s^ the error is
+/// its integral under a smooth weight, and only the part of the weight's slope is left, smaller by one power of the
+/// step.
 struct IntegralOrder {
   int color = 0;
   int opacity = 0;

@@ -4,7 +4,7 @@
 
 namespace raytruth {
 
-/// Between two samples the front one's value (left Riemann approximation).
+/// Holds the value of the front one between two samples (left Riemann approximation).
 struct Order0Left {
   static constexpr SchemeInfo info{.name = "order0_left",
                                    .summary = "front sample held (left Riemann)",
@@ -24,7 +24,7 @@ struct Order0Left {
   }
 };
 
-/// Between two samples the back one's value (right Riemann approximation).
+/// Holds the value of the back one between two samples (right Riemann approximation).
 struct Order0Right {
   static constexpr SchemeInfo info{.name = "order0_right",
                                    .summary = "back sample held (right Riemann)",
@@ -44,7 +44,7 @@ struct Order0Right {
   }
 };
 
-/// Between two samples the signal's value at their midpoint, an extra fetch.
+/// Holds the signal's value at their midpoint, an extra fetch, between two samples.
 struct Order0Mid {
   static constexpr SchemeInfo info{.name = "order0_mid",
                                    .summary = "value at the midpoint held",

@@ -4,7 +4,7 @@
 
 namespace raytruth {
 
-/// Linear between samples.
+/// The line between two samples.
 struct Order1 {
   static constexpr SchemeInfo info{.name = "order1",
                                    .summary = "linear between samples (trapezoid)",

@@ -8,7 +8,7 @@
 
 namespace raytruth {
 
-/// Of a trilinear sample of the signal.
+/// How many voxels a trilinear sample of the signal reads.
 inline constexpr std::int64_t voxels_per_fetch = 8;
 
 /// What a scheme makes of a ray, and what it reads and does for it.

@@ -135,7 +135,7 @@ class SampledMarch {
     return opacity;
   }
 
-  /// Of the ray, a share of interval k behind its front.
+  /// The place on the ray that lies a share of interval k behind its front.
   [[nodiscard]] double place(std::size_t k, double share) const {
     return std::lerp(ray_.positions[k], ray_.positions[k + 1], share);
   }
@@ -145,7 +145,7 @@ class SampledMarch {
     return look_up_(value, t);
   }
 
-  /// At sample k, which the slab before has looked up, unless it was left out.
+  /// The optics at sample k, which the slab before has looked up unless it was left out.
   vec4 optics_of_front(std::size_t k) { return last_sample_ == k ? last_ : optics(ray_.values[k], ray_.positions[k]); }
 
   void look_up_last(std::size_t k) {
@@ -164,7 +164,7 @@ class SampledMarch {
            method_.rule == SampledRule::riemann_mid;
   }
 
-  /// As a cell is by its middle, but for rounding.
+  /// Whether two widths are equal but for rounding, as those are into which its middle divides a cell.
   static bool are_equal(const Real& a, const Real& b) {
     const Real slack = Real(1e-6) * a;
     return a - b <= slack && b - a <= slack;
@@ -182,7 +182,7 @@ class SampledMarch {
   Outcome<Real> outcome_;
 };
 
-/// The ray by a sampled scheme.
+/// What a sampled scheme makes of the ray.
 template <class Real, class LookUp>
 Outcome<Real> march(const Sampled& method, const LookUp& look_up, const SampledRay<Real>& ray,
                     const Omissions& omissions = {}) {

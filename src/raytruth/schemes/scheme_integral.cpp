@@ -37,7 +37,7 @@ std::string_view refusal_of(std::string_view signal, const Samples<double>& samp
   return why;
 }
 
-/// With samples for what it read.
+/// The outcome with its counts: what it read were samples.
 Outcome<> counted(Outcome<> outcome, std::int64_t fetches, std::size_t slabs) {
   outcome.fetches = fetches;
   outcome.voxels = voxels_per_fetch * fetches;

@@ -46,13 +46,13 @@ class SchemeIntegral {
  public:
   SchemeIntegral(const PiecewiseLinear& transfer, Emission emission);
 
-  /// The scheme on these samples of the signal, a chain of degree 3 or 9 (`largest_degree`). Without its `omissions`;
-  /// the counts are those of the whole ray, and an exact integral has no radius then.
+  /// What the scheme makes of these samples of the signal, a chain of degree 3 or 9 (`largest_degree`). Its `omissions`
+  /// are left out; the counts are those of the whole ray even so, and an exact integral has no radius then.
   template <int Degree>
   Outcome<> operator()(const IntegralScheme& scheme, const Chain<Degree>& signal, const Samples<double>& samples,
                        const Omissions& omissions = {});
 
-  /// The same in binary32, samples, step and transfer function rounded to it; none but for sampled schemes.
+  /// The outcome in binary32, with samples, step and transfer function rounded to it; none but for sampled schemes.
   template <int Degree>
   std::optional<Outcome<>> in_binary32(const IntegralScheme& scheme, const Chain<Degree>& signal,
                                        const Samples<double>& samples);

@@ -5,8 +5,9 @@
 
 namespace raytruth {
 
-/// Linear through the true samples and `Count` equally spaced virtual samples in every interval, which are values of
-/// Curve's cubic there: what a renderer sees of that cubic at Count + 1 times the sampling rate. Needs a constant step.
+/// The lines through the true samples and `Count` equally spaced virtual samples in every interval, which are values of
+/// Curve's cubic there: what a renderer sees of that cubic at Count + 1 times the sampling rate. It needs a constant
+/// step.
 template <class Curve, int Count>
 struct VirtualSamples {
   template <class Real>
@@ -16,7 +17,7 @@ struct VirtualSamples {
     return VirtualCatmullRom::refusal(samples);
   }
 
-  /// On the given one of the interval's Count + 1 parts.
+  /// The line on the given one of the interval's Count + 1 parts.
   template <int Degree, class Real>
   static Bernstein<3, Real> interval(const Chain<Degree, Real>& signal, const Samples<Real>& samples, std::size_t k,
                                      int part) {
@@ -52,7 +53,8 @@ struct VirtualSamples {
   }
 };
 
-/// On the Catmull-Rom cubic: of its error, of third order, nothing shows beside that of the lines between the samples.
+/// Virtual samples on the Catmull-Rom cubic: its error, of third order, does not show beside that of the lines between
+/// the samples.
 template <int Count>
 struct VirtualCatmullRomSamples : VirtualSamples<VirtualCatmullRom, Count> {
  protected:
@@ -62,7 +64,7 @@ struct VirtualCatmullRomSamples : VirtualSamples<VirtualCatmullRom, Count> {
   }
 };
 
-/// On the chord: order 1 at more samples.
+/// Virtual samples on the chord: order 1 at more samples.
 template <int Count>
 struct VirtualLinearSamples : VirtualSamples<Order1, Count> {
  protected:

@@ -31,10 +31,10 @@ struct Highlight {
   /// m.
   [[nodiscard]] double exponent(double shininess) const { return shininess * ratio(shininess); }
 
-  /// Between 0 and 1 for cosines from -1 to 1. Shininess is at least 1.
+  /// The highlight, between 0 and 1 for cosines from -1 to 1. Shininess is at least 1.
   [[nodiscard]] double value(double cosine, double shininess) const;
 
-  /// The same for m already known: of many cosines at one shininess.
+  /// The value for m already known: for many cosines at one shininess.
   [[nodiscard]] double value_at_exponent(double cosine, double exponent) const;
 
   /// The highlight is 0 at cosines up to this one.
@@ -50,7 +50,8 @@ struct LargestDeviation {
   double fall = 0;       ///< n (1 - cosine)
 };
 
-/// Of a member of a family (degree 1 to 3), in the flank where it is as large at the foot; shininess may be infinite.
+/// The largest deviation of a member of a family (degree 1 to 3), that in the flank where the one at the foot is as
+/// large; shininess may be infinite.
 LargestDeviation largest_deviation(const Highlight& highlight, double shininess);
 
 namespace catalogue {

@@ -16,7 +16,7 @@ struct PointLight {
   double bare = 0;
 };
 
-/// From what lighting makes of a point's cosines to light: K_a + K_d n(N.L) and K_s h(n(N.H)) (Blinn and Phong), or
+/// Turns what lighting makes of a point's cosines into light: K_a + K_d n(N.L) and K_s h(n(N.H)) (Blinn and Phong), or
 /// Gooch's tones, which take the cosine as it is. The specular density is that of the shading method.
 class LightModel {
  public:

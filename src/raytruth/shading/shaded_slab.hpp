@@ -14,7 +14,7 @@ struct ShadedSlab {
   Vector3<double> front_normal{0, 0, 1};
   Vector3<double> back_normal{0, 0, 1};
 
-  /// Of the angle between the normals, as they are given.
+  /// The cosine of the angle between the normals, as they are given.
   [[nodiscard]] double cosine() const { return (front_normal * back_normal).sum(); }
 };
 
@@ -28,7 +28,8 @@ struct ShadedRadiance {
   [[nodiscard]] Vector3<double> color() const { return ambient + diffuse + specular; }
 };
 
-/// The same with a proven bound: every exact channel and the exact opacity lie within `radius` of the values here.
+/// Light and opacity with a proven bound: every exact channel and the exact opacity lie within `radius` of the values
+/// here.
 struct CertifiedRadiance : ShadedRadiance {
   double radius = 0;
   Status status = Status::converged;

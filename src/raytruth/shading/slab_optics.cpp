@@ -6,9 +6,9 @@ namespace raytruth {
 
 namespace {
 
-// Distances of finite scalars may overflow: their halves' do not.
+// Distances of finite scalars may overflow; those of their halves do not.
 
-/// Between two neighbouring points, at `s` in [a.s, b.s].
+/// The optics between two neighbouring points, at `s` in [a.s, b.s].
 Optics between(const TransferPoint& a, const TransferPoint& b, double s) {
   const double weight = (s / 2 - a.s / 2) / (b.s / 2 - a.s / 2);
   return {std::lerp(a.optics.extinction, b.optics.extinction, weight),

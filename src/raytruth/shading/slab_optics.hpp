@@ -81,7 +81,7 @@ class StretchSum {
         tolerance_(tolerance),
         sums_(sums) {}
 
-  /// From x = begin to end.
+  /// Adds what lies from x = begin to end.
   void add(double begin, double end) {
     const auto local = [this](double x) { return std::clamp((x - stretch_.begin) / width(), 0.0, 1.0); };
     add_shallow(local(begin), local(end));
@@ -136,7 +136,7 @@ class StretchSum {
     const Sums front = by_rule(begin, middle);
     const Sums back = by_rule(middle, end);
     const Sums both = front + back;
-    // Or as nearly the same as rounding lets large functions be. Not a number stays one.
+    // They may also say as nearly the same as rounding lets large functions do. What is not a number stays so.
     const Sums rounding = relative_precision * (front.abs() + back.abs());
     if (halvings == 0 || !((both - whole).abs() > tolerance_.max(rounding)).any()) {
       sums_ += both;
@@ -158,8 +158,8 @@ class StretchSum {
 }  // namespace slab_quadrature
 
 /// The integrals of Count functions at once: functions(x, extinction_slope) gives an array of their values, smooth but
-/// at `breaks`. By a Gauss-Legendre rule of 16 nodes on panels that are halved until nothing changes by more than
-/// 1e-15 of what light there is, or 1e-14 of what the panel adds; to about 1e-14, without a bound.
+/// at `breaks`. A Gauss-Legendre rule of 16 nodes is applied to panels, which are halved until nothing changes by more
+/// than 1e-15 of what light there is, or 1e-14 of what the panel adds; the error is about 1e-14, without a bound.
 template <std::size_t Count, class Functions>
 SlabSums<Count> slab_integral(const SlabOptics& optics, Emission emission, std::vector<double> breaks,
                               const Functions& functions) {
@@ -202,7 +202,7 @@ SlabSums<Count> slab_integral(const SlabOptics& optics, Emission emission, std::
 
 /// The moments of a slab, which tables hold: of 1, s, s^2, s^3 and of the tent that is 1 half-way, 0 at both ends
 /// (Guetat 2010, section 5). `colored` are the I_k (times the transfer function's colour), `white` the I'_k and I'',
-/// with the emission density of white matter (errata: as printed I'_k is `bare`).
+/// with the emission density of white matter (as printed I'_k is `bare`: errata, Guetat 8).
 using SlabMoments = SlabSums<5>;
 SlabMoments slab_moments(const SlabOptics& optics, Emission emission);
 

@@ -50,7 +50,7 @@ struct Shade {
 Ball power_of(const Ball& base, double power) {
   Ball result;
   Ball exponent = power;
-  // From a base that touches 0 on, all powers in between.
+  // A base that touches 0 may have all powers from 0 on.
   const Ball largest = max(base.magnitude(), 0.0);
   const bool is_whole = std::floor(power) == power;
   if (base.sign() > 0 || is_whole)
@@ -67,7 +67,7 @@ int sign_factor(Negative negative, int sign) {
   return negative == Negative::mirror ? sign : std::max(sign, 0);
 }
 
-/// Of the diffuse term, for a cosine of this sign.
+/// The shade of the diffuse term, for a cosine of this sign.
 Shade diffuse_shade(Negative negative, int sign) { return {0.0, static_cast<double>(sign_factor(negative, sign))}; }
 
 /// A highlight is (1 + slope (cosine - 1))^power, clamped at 0 unless it is a lobe whose negative cosines stay.
@@ -83,7 +83,7 @@ Highlighting highlighting_of(const Lighting& lighting) {
   return {Ball(lighting.highlight->exponent(lighting.shininess)) / degree, degree, true};
 }
 
-/// Of the highlight, before it is clamped at 0.
+/// The shade of the highlight, before it is clamped at 0.
 Shade highlight_shade(const Highlighting& highlighting, Negative negative, int sign) {
   const Ball& slope = highlighting.slope;
   return {Ball(1.0) - slope, slope * static_cast<double>(sign_factor(negative, sign)), highlighting.power};
@@ -123,7 +123,7 @@ void isolate(const Polynomial& p, const Ball& begin, const Ball& end, std::vecto
   isolate(p, middle, end, gaps);
 }
 
-/// Disjoint, in order.
+/// The gaps made disjoint, in order.
 std::vector<Gap> merged(std::vector<Gap> gaps) {
   std::sort(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) { return a.begin < b.begin; });
   std::vector<Gap> result;
@@ -180,7 +180,7 @@ void raise(acb_ptr result, acb_ptr base, double power, int analytic, slong bits)
     acb_pow_analytic(result, base, exponent.get(), analytic, bits);
     return;
   }
-  // On a box about 0 all that is no larger.
+  // On a box about 0 the power may be all that is no larger.
   Ball largest;
   acb_get_abs_ubound_arf(arb_midref(largest.get()), base, bits);
   arb_pow(largest.get(), largest.get(), acb_realref(exponent.get()), bits);
@@ -450,12 +450,12 @@ Polynomial polynomial(std::initializer_list<Ball> coefficients) {
   return result;
 }
 
-/// From `front` at 0 to `back` at 1; equal ones make a constant.
+/// The line from `front` at 0 to `back` at 1; equal ends make a constant.
 Polynomial linear(double front, double back) {
   return front == back ? Polynomial(front) : polynomial({Ball(front), Ball(back) - Ball(front)});
 }
 
-/// In powers of x, exactly.
+/// The polynomial in powers of x, exactly.
 Polynomial power_basis(const Bernstein<3>& p) {
   const auto& [a, b, c, d] = p.coefficients;
   const Ball first(a);

@@ -29,14 +29,15 @@ CertifiedRadiance slab_reference(const ShadedSlab& slab, const PiecewiseLinear& 
 /// Coefficients of a cubic in x.
 using Cubic = std::array<double, 4>;
 
-/// The same with given cubics as cosines N.L and N.H; they stand for themselves, so the normals of `slab` do not count.
+/// What a slab sends to its front if its cosines N.L and N.H are given cubics; they stand for themselves, so the
+/// normals of `slab` do not count.
 CertifiedRadiance cubic_reference(const ShadedSlab& slab, const PiecewiseLinear& transfer, Emission emission,
                                   const Lighting& lighting, const Cubic& light_cosine, const Cubic& half_cosine,
                                   double tolerance = 1e-13);
 
-/// The same of a piece of a ray whose scalar is a cubic in x and whose normal is the normalised vector of three other
-/// ones: the lit truth of one cell Where the vector is zero, nothing is known of its direction,
-/// and the radius is infinite.
+/// What a piece of a ray sends to its front if its scalar is a cubic in x and its normal the normalised vector of three
+/// other ones: the lit truth of one cell. Where the vector is zero, nothing is known of its direction, and the radius
+/// is infinite.
 CertifiedRadiance gradient_reference(const Bernstein<3>& scalar, double length,
                                      const std::array<Bernstein<3>, 3>& gradient, const PiecewiseLinear& transfer,
                                      Emission emission, const Lighting& lighting, double tolerance = 1e-13);

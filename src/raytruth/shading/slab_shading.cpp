@@ -297,7 +297,7 @@ SlabCosines cosines_of(const ShadedSlab& slab, const Lighting& lighting) {
   const auto dot = [](const Vector3<double>& a, const Vector3<double>& b) { return (a * b).sum(); };
   return {dot(slab.front_normal, lighting.light), dot(slab.back_normal, lighting.light),
           dot(slab.front_normal, lighting.half), dot(slab.back_normal, lighting.half),
-          // Of vectors that are unit vectors only nearly.
+          // The vectors are unit vectors only nearly.
           std::clamp(slab.cosine(), -1.0, 1.0)};
 }
 

@@ -60,9 +60,8 @@ struct Shading {
   bool needs_extinction = false;  ///< its light depends on the extinction's slope too
 };
 
-/// What the method makes of the slab: its shading, integrated with self-attenuation to about 1e-14 of the light there
-/// is
-/// (`slab_integral`), so that all its error is the shading's. The method must not refuse the lighting.
+/// What the method makes of the slab: its shading, integrated with self-attenuation (`slab_integral`) to about 1e-14 of
+/// the light there is, so that all its error is the shading's. The method must not refuse the lighting.
 ShadedRadiance shade(const Shading& shading, const SlabCosines& cosines, const SlabOptics& optics, Emission emission,
                      const Lighting& lighting);
 

@@ -24,8 +24,8 @@ long double chebyshev_point(int i, int count) {
   return (1 - std::cos(std::numbers::pi_v<long double> * (2 * i + 1) / (2 * count))) / 2;
 }
 
-/// From the values at the ten Chebyshev points to Bernstein coefficients: the inverse of B_j(u_i). In extended
-/// precision, since the matrix' condition number is about 10^3.
+/// The matrix from the values at the ten Chebyshev points to Bernstein coefficients: the inverse of B_j(u_i), made in
+/// extended precision, since its condition number is about 10^3.
 const Matrix& bernstein_from_values() {
   static const Matrix inverse = [] {
     Matrix matrix;

@@ -78,7 +78,7 @@ class CellWalk {
   /// Goes on from where the piece ended.
   void advance() {
     for (std::size_t axis = 0; axis < 4; ++axis) {
-      // Into the next cell at 0 where this one was left at 1, and the other way round.
+      // The next cell is entered at 0 where this one was left at 1, and the other way round.
       cell_[axis] += crosses_[axis] * (2 * exit_[axis] - 1);
       begin_[axis] = crosses_[axis] != 0 ? 1 - exit_[axis] : end_[axis];
     }

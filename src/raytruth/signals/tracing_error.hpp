@@ -42,7 +42,7 @@ struct ExactLine {
   double cut;   ///< Ray::length
 };
 
-/// The stretch of a line between two lambda in the coordinates of the cell around its middle, which it leaves at its
+/// The segment of a line between two lambda, in the coordinates of the cell around its middle, which it leaves at its
 /// ends by no more than rounding.
 struct ExactSegment {
   ExactSegment(const ExactLine& line, const DoubleDouble& lambda_begin, const DoubleDouble& lambda_end) {
@@ -56,8 +56,9 @@ struct ExactSegment {
     for (int axis = 0; axis < 3; ++axis)
       low[axis] =
           std::clamp(floor(middle[axis]), -1.0, static_cast<double>(line.size[static_cast<std::size_t>(axis)] - 1));
-    // From either border for itself, so that a line that starts on one is off by the noise of its way only: sums are
-    // off by 2^-102 of their terms, and where these are of different size the sum is far from the border.
+    // Places are counted from either border for itself, so that a line that starts on one is off by the noise of its
+    // way only: sums are off by 2^-102 of their terms, and where these are of different size the sum is far from the
+    // border.
     const DoubleDouble4 from_low = two_sum(origin, -low);
     const DoubleDouble4 from_high = two_sum(origin, -low - 1);
     const DoubleDouble4 begin = from_low + from;
@@ -98,7 +99,7 @@ struct ReachedVoxels {
       high[axis] = std::clamp(last_voxel[axis], std::int64_t{0}, grid.size[axis] - 1);
     }
     first = grid.at(low[0], low[1], low[2]);
-    // Row by row, without a branch for every voxel: this is much of the time that a bound takes.
+    // Voxels are taken row by row, without a branch for every one: this is much of the time that a bound takes.
     const std::int64_t next_row = grid.size[0];
     const std::int64_t next_plane = grid.size[0] * grid.size[1];
     const std::int64_t count = high[0] - low[0];
@@ -147,7 +148,7 @@ template <int Degree, class Exact>
 SignalError tracing_error(const Grid& grid, const Ray& ray, const Chain<Degree>& chain,
                           const Reconstruction& reconstruction, const std::vector<bool>& is_needless, Exact&& exact) {
   constexpr double value_noise = 0x1p-92;
-  // For the rounding of the bounds themselves, sums of some twenty terms >= 0.
+  // It makes up for the rounding of the bounds themselves, sums of some twenty terms >= 0.
   constexpr double upwards = 1 + 0x1p-46;
 
   const ExactLine line(grid.size, ray);

@@ -21,8 +21,8 @@ using Tensor = std::array<Real, 64>;  ///< index 16 k + 4 j + i
 constexpr std::array<double, 4> binomial_3{1, 3, 3, 1};
 constexpr std::array<double, 10> binomial_9{1, 9, 36, 84, 126, 126, 84, 36, 9, 1};
 
-/// From the Bernstein coefficients of a cubic on [0, 1] to those on its part [p, q], as [row][column]: row r holds the
-/// weights of the polar form at 3 - r times p and r times q, all of them positive.
+/// The matrix from the Bernstein coefficients of a cubic on [0, 1] to those on its part [p, q], as [row][column]: row r
+/// holds the weights of the polar form at 3 - r times p and r times q, all of them positive.
 template <class Real>
 Matrix<Real> restriction(const Real& p, const Real& q) {
   const auto polar = [](const Real& a, const Real& b, const Real& c) {
@@ -35,7 +35,8 @@ Matrix<Real> restriction(const Real& p, const Real& q) {
   return {polar(p, p, p), polar(p, p, q), polar(p, q, q), polar(q, q, q)};
 }
 
-/// From the four voxels around a cell to the Bernstein coefficients on its part [begin, end]: [coefficient][voxel].
+/// The matrix from the four voxels around a cell to the Bernstein coefficients on its part [begin, end]:
+/// [coefficient][voxel].
 template <class Real>
 Matrix<Real> cell_matrix(const Matrix<Real>& kernel, const Real& begin, const Real& end) {
   const Matrix<Real> part = restriction(begin, end);
@@ -46,7 +47,8 @@ Matrix<Real> cell_matrix(const Matrix<Real>& kernel, const Real& begin, const Re
   return matrix;
 }
 
-/// Voxels to Bernstein coefficients along each axis in turn; the innermost loops run over what lies side by side.
+/// Turns voxels into Bernstein coefficients along each axis in turn; the innermost loops run over what lies side by
+/// side.
 template <class Real>
 Tensor<Real> contract(const Tensor<double>& voxels, const Matrix<Real>& x, const Matrix<Real>& y,
                       const Matrix<Real>& z) {
@@ -163,8 +165,8 @@ Grid bspline_coefficients(const Grid& grid) {
 }
 
 double prefilter_error(const Grid& voxels, const Grid& coefficients) {
-  // In 216ths, so that all weights are powers of 2; the sums' rounding by compensated summation (T. Ogita, S. M. Rump,
-  // S. Oishi, Accurate sum and dot product, 2005, proposition 4.5).
+  // Residuals are counted in 216ths, so that all weights are powers of 2; the rounding of their sums is known by
+  // compensated summation (T. Ogita, S. M. Rump, S. Oishi, Accurate sum and dot product, 2005, proposition 4.5).
   constexpr std::array<double, 3> weight{1, 4, 1};
   std::vector<double> of_slice(static_cast<std::size_t>(voxels.size[2]));
   tbb::parallel_for(std::int64_t{0}, voxels.size[2], [&](std::int64_t k) {

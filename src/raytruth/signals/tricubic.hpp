@@ -21,7 +21,7 @@ enum class CubicKernel {
 /// kernel's cubic on the cell [0, 1].
 template <class Real>
 Real kernel_coefficient(CubicKernel kernel, std::size_t coefficient, std::size_t voxel) {
-  // Sixths. B-spline: C. de Boor, A practical guide to splines; Catmull-Rom: Keys 1981 with a = -1/2.
+  // Numbers are sixths. B-spline: C. de Boor, A practical guide to splines; Catmull-Rom: Keys 1981 with a = -1/2.
   constexpr std::array<std::array<int, 4>, 4> bspline{{{1, 4, 1, 0}, {0, 4, 2, 0}, {0, 2, 4, 0}, {0, 1, 4, 1}}};
   constexpr std::array<std::array<int, 4>, 4> catmull_rom{{{0, 6, 0, 0}, {-1, 6, 1, 0}, {0, 1, 6, -1}, {0, 0, 6, 0}}};
   return Real((kernel == CubicKernel::bspline ? bspline : catmull_rom)[coefficient][voxel]) / 6;
@@ -38,8 +38,8 @@ Real kernel_coefficient(CubicKernel kernel, std::size_t coefficient, std::size_t
 /// `trace_trilinear`; for an interpolating B-spline pass the grid of `bspline_coefficients`.
 void trace_tricubic(const Grid& grid, CubicKernel kernel, const Ray& ray, Chain<9>& chain);
 
-/// As `trilinear_error`. `coefficient_error` bounds the error of each voxel of `grid`, for B-spline coefficients that
-/// were made from others: `prefilter_error`. B-splines being means, the signal is off by no more.
+/// Bounds as those of `trilinear_error`. `coefficient_error` bounds the error of each voxel of `grid`, for B-spline
+/// coefficients that were made from others: `prefilter_error`. B-splines being means, the signal is off by no more.
 SignalError tricubic_error(const Grid& grid, CubicKernel kernel, const Ray& ray, const Chain<9>& chain,
                            double coefficient_error = 0, const std::vector<bool>& is_needless = {});
 

@@ -42,7 +42,8 @@ std::array<double, 8> cut(const std::array<double, 8>& corners, double begin, do
   return result;
 }
 
-/// The same of numbers in 106 bits: those of even and of odd index, which become those below 4 and those from there on.
+/// The corners as numbers in 106 bits, cut in halves: a cut takes those of even and of odd index, and makes those below
+/// 4 and those from there on.
 struct Corners106 {
   DoubleDouble4 first;
   DoubleDouble4 second;
@@ -52,7 +53,7 @@ struct Corners106 {
     return {first + difference * begin, first + difference * end};
   }
 
-  /// From halves by the highest bit of the index to halves by the lowest.
+  /// Turns halves by the highest bit of the index into halves by the lowest.
   [[nodiscard]] Corners106 by_lowest_bit() const {
     Corners106 result;
     for (int i = 0; i < 2; ++i) {
@@ -73,7 +74,7 @@ struct Corners106 {
 Bernstein<3> cell_cubic(const Grid& grid, const CellSegment<double>& segment) {
   auto corners = corners_of(grid, segment.cell);
   for (std::size_t axis = 0; axis < 3; ++axis) corners = cut(corners, segment.begin[axis], segment.end[axis]);
-  // As steps from the ends: constant data give constant coefficients, bit by bit.
+  // Coefficients are steps from the ends, so that constant data give constant ones, bit by bit.
   const double p = corners[0];
   const double q = corners[7];
   return {{p, p + ((corners[1] - p) + (corners[2] - p) + (corners[4] - p)) / 3,
@@ -85,7 +86,7 @@ Bernstein<3, DoubleDouble> cell_cubic(const Grid& grid, const CellSegment<Double
   Corners106 corners{{{v[0], v[1], v[2], v[3]}, {}}, {{v[4], v[5], v[6], v[7]}, {}}};
   for (std::size_t axis = 0; axis < 3; ++axis)
     corners = corners.by_lowest_bit().cut(segment.begin[axis], segment.end[axis]);
-  // The same formula, for both inner coefficients side by side.
+  // Both inner coefficients are computed side by side, by the formula above.
   const auto pair = [&](int i, int j) {
     const DoubleDouble a = i < 4 ? corners.first[i] : corners.second[i - 4];
     const DoubleDouble b = j < 4 ? corners.first[j] : corners.second[j - 4];

@@ -24,7 +24,7 @@ namespace raytruth {
 /// and what is refused (InputError), stands at `trace_cells`. `chain` is overwritten and keeps its memory.
 void trace_trilinear(const Grid& grid, const Ray& ray, Chain<3>& chain);
 
-/// The same as a new chain.
+/// The chain as a new one.
 Chain<3> trace_trilinear(const Grid& grid, const Ray& ray);
 
 /// How far the chain of a ray may be from the signal along the ray at its exactly normalised direction: bounds for all

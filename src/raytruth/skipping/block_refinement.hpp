@@ -14,9 +14,9 @@ namespace raytruth {
 /// one is made of, can reach, and as much wider as field and virtual samples leave those of their data.
 BlockRefinement block_refinement(FieldKind field, const std::optional<double>& step, BlockBounds bounds);
 
-/// More than what a displacement by 10^-9 of a voxel changes in a field of this grid: no cubic kernel has a derivative
-/// above 16/3 per axis and unit of the voxels' range. And more than a chain's rounding, some units in the last place of
-/// its voxels.
+/// A margin that is more than what a displacement by 10^-9 of a voxel changes in a field of this grid, for no cubic
+/// kernel has a derivative above 16/3 per axis and unit of the voxels' range; and more than a chain's rounding, some
+/// units in the last place of its voxels.
 double margin_of(const Grid& grid);
 
 /// Blocks that hold for every point of every ray through a field: no block that is left out has anything to see.

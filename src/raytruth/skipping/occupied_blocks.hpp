@@ -41,7 +41,7 @@ class OccupiedBlocks {
   void parts(const std::array<double, 3>& entry, const std::array<double, 3>& direction, double length,
              std::vector<RayPart>& parts) const;
 
-  /// Of all blocks, those that are occupied.
+  /// The share of all blocks that is occupied.
   [[nodiscard]] double share() const;
 
   [[nodiscard]] const std::array<std::int64_t, 3>& count() const { return count_; }

@@ -81,7 +81,7 @@ class IntervalWeights {
 
   [[nodiscard]] const std::vector<double>& of_true_sample(std::size_t sample) const { return true_[sample]; }
 
-  /// At u between the middle two: the rule applied to weights instead of values.
+  /// The weights at u between the middle two: the rule applied to weights instead of values.
   void at(double u, std::vector<double>& weights) const {
     Rules<double> rules;
     std::array<double, 4> blend{};

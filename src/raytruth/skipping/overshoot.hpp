@@ -17,7 +17,8 @@ namespace raytruth {
 /// and outer ones in [g, G] it is at least M + (M - g) / 8, whatever m is.
 double largest_virtual_sample(std::pair<double, double> inner, std::pair<double, double> outer);
 
-/// The same on the first interval of a ray, where a ghost stands for the sample before it; the other three in `range`.
+/// The largest value on the first interval of a ray, where a ghost stands for the sample before it; the other three lie
+/// in `range`.
 double largest_first_virtual_sample(std::pair<double, double> range);
 
 /// What the samples along a ray are made from.

@@ -20,7 +20,7 @@ class PartsOfRay {
   /// `blocks` null: all of every ray is looked at.
   PartsOfRay(const std::array<std::int64_t, 3>& size, const OccupiedBlocks* blocks) : size_(size), blocks_(blocks) {}
 
-  /// In `unit`s of a voxel behind the ray's entry; none: all of it. Valid until the next call.
+  /// The parts, in `unit`s of a voxel behind the ray's entry; none: all of it. They are valid until the next call.
   std::optional<std::span<const RayPart>> operator()(const Ray& ray, double unit = 1) {
     if (blocks_ == nullptr) return std::nullopt;
     parts_.clear();

@@ -9,7 +9,7 @@ namespace raytruth {
 
 namespace {
 
-/// Linear between the two items around, whose values `value_of` gives; constant beyond the ends.
+/// The value that is linear between the two items around, whose values `value_of` gives, and constant beyond the ends.
 template <class Item, class ValueOf>
 double interpolated(const std::map<double, Item>& items, double place, ValueOf&& value_of) {
   const auto next = items.lower_bound(place);

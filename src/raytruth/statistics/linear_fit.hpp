@@ -17,7 +17,7 @@ struct LinearFit {
   [[nodiscard]] double operator()(const std::vector<double>& features) const;
 };
 
-/// By least squares. Features that the observations do not tell apart share their weight (least norm). Throws
+/// Fits by least squares. Features that the observations do not tell apart share their weight (least norm). Throws
 /// InputError without observations, or for observations with different numbers of features.
 LinearFit fit_linear(const std::vector<Observation>& observations);
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t fewest_pairs = 5;
 constexpr double normal_quantile = 1.959963984540054;  // of 97.5 %
 
-/// 1, 2, ... in ascending order, ties at their mean.
+/// The ranks of the values: 1, 2, ... in ascending order, ties at their mean.
 std::vector<double> ranks_of(const std::vector<double>& values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -27,7 +27,7 @@ struct OpacityEntry {
 /// entries, opacities outside [0, 1], and colours that are negative or not finite.
 DiscreteTransfer from_opacities(const std::vector<OpacityEntry>& entries);
 
-/// The same of a transfer function read at the table's scalars.
+/// The discrete transfer function whose entries are read at the table's scalars.
 DiscreteTransfer sampled(const PiecewiseLinear& transfer, const TableAxes& axes, Emission emission);
 
 /// Interval k holds the mean extinction between its entries, and the mean emission density over that extinction (for
@@ -35,7 +35,8 @@ DiscreteTransfer sampled(const PiecewiseLinear& transfer, const TableAxes& axes,
 /// are long, of first order next to the table's diagonal, where an interval is a whole slab.
 DiscreteTransfer interval_means(const PiecewiseLinear& transfer, const TableAxes& axes, Emission emission);
 
-/// The same extinction, all colours white: what a highlight sees (Lum 2004, section 3). Plain emission stays plain.
+/// The transfer function with its extinction, but all colours white: what a highlight sees (Lum 2004, section 3). Plain
+/// emission stays plain.
 DiscreteTransfer whitened(DiscreteTransfer transfer);
 
 /// A homogeneous stretch: C = A c (associated) or c length A / D (plain), A = 1 - exp(-D), D = tau length.
@@ -46,7 +47,7 @@ typename Rules<Real>::vec4 homogeneous_stretch(const Optics& optics, Emission em
   const vec4 color_and_extinction(Real(optics.color[0]), Real(optics.color[1]), Real(optics.color[2]),
                                   Real(optics.extinction));
   if (emission == Emission::plain) return rules.homogeneous_slab(color_and_extinction, length, false);
-  // Not through q = tau c, which an opaque interval does not have.
+  // It does not go through q = tau c, which an opaque interval does not have.
   const Real opacity = rules.absorption(color_and_extinction[3] * length, false);
   vec4 slab = opacity * color_and_extinction;
   slab[3] = opacity;

@@ -119,7 +119,7 @@ void as_printed(const Crossing& crossing, bool backwards, DissertationAlgorithm 
   }
 }
 
-/// Front to back, d fixed.
+/// The corrected algorithm: front to back, d fixed.
 void corrected(const IntervalSlabs& interval_slabs, const Crossing& crossing, bool backwards,
                const Interpolation& interpolation, Table<double>& table) {
   const std::size_t size = table.axes.size;

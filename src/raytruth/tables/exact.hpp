@@ -15,8 +15,7 @@ void check_depth(const PiecewiseLinear& transfer, const TableAxes& axes);
 
 /// The continuous integral, the yardstick of all other tables: the slab between two neighbouring entries is exact
 /// (interval_slabs.hpp), and subranges composite it (Lum 2004, section 4.2), which is exact too. A test certifies 10^4
-/// entries, one by one, by the reference. Throws InputError as `check` and
-/// `check_depth` do.
+/// entries, one by one, by the reference. Throws InputError as `check` and as `check_depth` do.
 Table<double> exact_table(const PiecewiseLinear& transfer, const TableAxes& axes, Emission emission);
 
 }  // namespace raytruth

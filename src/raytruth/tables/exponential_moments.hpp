@@ -7,12 +7,12 @@
 namespace raytruth {
 
 /// J_k(y) = integral from 0 to 1 of v^k exp(-y v) dv, k = 0 to 3, for y >= 0: how light that is sent out evenly along a
-/// homogeneous stretch of optical depth y is distributed. By parts y J_k = k J_(k-1) - e^-y: upwards it loses digits
-/// for small y, downwards it adds positive numbers. So up to y = 4 from the series
+/// homogeneous stretch of optical depth y is distributed. By parts y J_k = k J_(k-1) - e^-y: upwards this loses digits
+/// for small y, downwards it adds positive numbers. So up to y = 4 it begins with the series
 ///
 ///     J_3 = e^-y sum over n of y^n / (4 5 ... (4 + n))   (Abramowitz and Stegun, 6.5.29)
 ///
-/// downwards, and from there on upwards. Relative error a few units in the last place.
+/// and goes downwards; from y = 4 on it goes upwards. The relative error is a few units in the last place.
 inline std::array<double, 4> exponential_moments(double y) {
   std::array<double, 4> moments{};
   const double transmittance = std::exp(-y);

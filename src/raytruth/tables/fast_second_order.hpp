@@ -15,12 +15,12 @@ struct SlabKernels;
 /// Whether a transfer function is what its values at the table's entries say: all points at entries, no jumps.
 bool is_linear_between_entries(const PiecewiseLinear& transfer, const TableAxes& axes);
 
-/// Iterations for all entries.
+/// Fills the table by iterations.
 void fill_second_order_table(Table3<float>& table, const PiecewiseLinear& transfer, const Iterations& iterations,
                              const SlabKernels& kernels);
 
-/// The continuous integrals: at most 5 * 10^-6 from the certified ones for colours up to 1. Slabs deeper than 24
-/// between two neighbouring entries are certified ones, which takes longer.
+/// Fills the table with the continuous integrals: at most 5 * 10^-6 from the certified ones for colours up to 1. Slabs
+/// deeper than 24 between two neighbouring entries are certified ones, which takes longer.
 void fill_exact_second_order_table(Table3<float>& table, const PiecewiseLinear& transfer, const SlabKernels& kernels);
 
 }  // namespace raytruth

@@ -12,8 +12,8 @@
 namespace raytruth {
 
 /// A transfer function that is linear between points, cut at a table's scalars: what a slab does between two
-/// neighbouring entries, exactly, for any length. By the certified quadrature of reference/piece_integral.hpp, eight
-/// stretches side by side, so to about 1e-15.
+/// neighbouring entries, exactly, for any length. The certified quadrature of reference/piece_integral.hpp does it,
+/// eight stretches side by side, so the error is about 1e-15.
 class IntervalSlabs {
  public:
   using vec4 = Rules<double>::vec4;

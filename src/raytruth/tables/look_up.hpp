@@ -48,7 +48,7 @@ typename Rules<Real>::vec4 nearest(const TableAxes& axes, const Texel& texel, co
                TablePlace<Real>::of(axes, scalars[1], 0).nearest());
 }
 
-/// Between the four entries around.
+/// Bilinear between the four entries around.
 template <class Real, class Texel>
 typename Rules<Real>::vec4 bilinear(const TableAxes& axes, const Texel& texel, const std::array<Real, 2>& scalars,
                                     int weight_bits = 0) {
@@ -59,7 +59,7 @@ typename Rules<Real>::vec4 bilinear(const TableAxes& axes, const Texel& texel, c
                                       back.weight);
 }
 
-/// Of slabs of second order, texel(front, middle, back): between the eight entries around.
+/// The look-up of slabs of second order, texel(front, middle, back): trilinear between the eight entries around.
 template <class Real, class Texel>
 typename Rules<Real>::vec4 trilinear(const TableAxes& axes, const Texel& texel, const std::array<Real, 3>& scalars,
                                      int weight_bits = 0) {
@@ -80,7 +80,7 @@ struct TableFormat {
   std::size_t bytes = 8;                ///< of a number
 };
 
-/// From the most exact one to the smallest.
+/// All formats, from the most exact one to the smallest.
 inline constexpr std::array table_formats{TableFormat{}, TableFormat{"float32", true, TexelType::float32, 4},
                                           TableFormat{"float16", true, TexelType::float16, 2},
                                           TableFormat{"unorm16", true, TexelType::unorm16, 2},

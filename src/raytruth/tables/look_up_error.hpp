@@ -27,15 +27,15 @@ struct LookUpError {
   double radius = 0;                    ///< of the certified slabs: a bound on the errors' error
 };
 
-/// Of a table of slabs, by cells of its grid.
+/// The error of a table of slabs, by cells of its grid.
 LookUpError linear_look_up_error(const Table<double>& table, const PiecewiseLinear& transfer, Emission emission,
                                  const TableFormat& format);
 
-/// Of a table of weighted light, at random places, each by ball arithmetic.
+/// The error of a table of weighted light, at random places, each by ball arithmetic.
 LookUpError weighted_look_up_error(const Table<double>& table, const TableContent& content,
                                    const PiecewiseLinear& transfer, Emission emission, const TableFormat& format);
 
-/// Of a table over three scalars, at random places.
+/// The error of a table over three scalars, at random places.
 LookUpError second_order_look_up_error(const Table3<float>& table, const PiecewiseLinear& transfer,
                                        const TableAxes& axes, Emission emission, const TableFormat& format);
 

@@ -27,7 +27,7 @@ std::array<Eigen::Array<double, 4, 1>, 4> homogeneous_moments(const Optics& opti
 ///
 /// sums of what is never negative. The middle of a slab of odd width lies inside an interval: I'' is made of the ranges
 /// of half intervals before and behind the middle. A homogeneous interval has the moments of exponential_moments.hpp,
-/// so slabs of one colour and extinction are exact, and others as `interval_means` makes them. Throws
+/// so slabs of one colour and extinction are exact, and the others are as exact as `interval_means` makes them. Throws
 /// InputError as `check` does.
 MomentTables moment_tables(const DiscreteTransfer& transfer, const TableAxes& axes);
 

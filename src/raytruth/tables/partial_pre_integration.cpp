@@ -13,7 +13,7 @@ namespace raytruth {
 
 namespace {
 
-/// Of gamma's table.
+/// The axes of the table over gamma.
 TableAxes gamma_axes(std::size_t size) { return {.size = size, .low = 0, .high = 1, .length = 1}; }
 
 double gamma_of(double depth) { return std::isinf(depth) ? 1 : depth / (depth + 1); }

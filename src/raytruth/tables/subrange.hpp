@@ -19,7 +19,7 @@ void composite_subranges(Table<Real>& table, const Make& make) {
       [&table](std::size_t front, std::size_t back, const Slab& slab) { table.set(front, back, slab); });
 }
 
-/// Lum 2004, section 4.2: incremental subrange integration. The numbers of `brute_force_table`, in O(n^2).
+/// Lum 2004, section 4.2: incremental subrange integration. It gives the numbers of `brute_force_table`, in O(n^2).
 template <class Real>
 Table<Real> subrange_table(const DiscreteTransfer& transfer, const TableAxes& axes) {
   Table<Real> table(axes);

@@ -106,7 +106,7 @@ TableError table_error(const CertifiedCells& truth, const LookUp& look_up) {
   return error;
 }
 
-/// Of bilinear look-ups in a table of this format, whose entries are entry(cell, front, back).
+/// The error of bilinear look-ups in a table of this format, whose entries are entry(cell, front, back).
 template <class Entry>
 TableError bilinear_error(const CertifiedCells& truth, const Entry& entry, const TableFormat& format = {},
                           int weight_bits = 0) {

@@ -16,7 +16,7 @@ struct Texture {
   std::size_t channels = 1;        ///< 1 or 4
   std::vector<float> texels = {};  ///< x fastest, channels of a texel side by side
 
-  /// The same as this format keeps it. Throws InputError for a format of another number of channels.
+  /// The texture as this format keeps it. Throws InputError for a format of another number of channels.
   [[nodiscard]] Texture stored(TexelFormat format) const;
 };
 

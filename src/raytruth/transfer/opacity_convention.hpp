@@ -17,7 +17,7 @@ double extinction_of(double opacity, double length);
 /// solved). Throws InputError unless 0 <= a <= 1 and ratio > 0.
 double corrected_opacity(double opacity, double ratio);
 
-/// The same to first order, min(1, ratio a): what becomes of opacity taken for extinction. Throws as above.
+/// The first order of that, min(1, ratio a): what opacity becomes if it is taken for extinction. Throws as above.
 double clamped_opacity(double opacity, double ratio);
 
 }  // namespace raytruth

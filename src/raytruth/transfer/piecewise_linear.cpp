@@ -30,7 +30,7 @@ void check_points(const std::vector<Point>& points, ColorOf color_of) {
 }
 
 Optics interpolate(const TransferPoint& a, const TransferPoint& b, double s) {
-  // Divided first: the distance of two finite scalars may overflow.
+  // Scalars are halved first: the distance of two finite ones may overflow.
   const double weight = (s / 2 - a.s / 2) / (b.s / 2 - a.s / 2);
   return {std::lerp(a.optics.extinction, b.optics.extinction, weight),
           a.optics.color + weight * (b.optics.color - a.optics.color)};

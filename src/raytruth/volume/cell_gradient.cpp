@@ -7,7 +7,7 @@ namespace raytruth {
 
 namespace {
 
-/// Between a at 0 and b at 1; equal ones stay as they are.
+/// The line from a at 0 to b at 1; equal ends stay as they are.
 Vector3<double> between(const Vector3<double>& a, const Vector3<double>& b, double weight) {
   return a + weight * (b - a);
 }

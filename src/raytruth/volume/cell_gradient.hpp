@@ -15,10 +15,10 @@ class CellGradient {
  public:
   CellGradient(const Grid& grid, const std::array<std::int64_t, 3>& cell);
 
-  /// At a place in [0, 1]^3.
+  /// The gradient at a place in [0, 1]^3.
   [[nodiscard]] Vector3<double> at(const std::array<double, 3>& place) const;
 
-  /// Along the segment from p to q, [0, 1]^3, axis by axis: cubics (signals/trilinear.hpp).
+  /// The gradient along the segment from p to q in [0, 1]^3, axis by axis: cubics (signals/trilinear.hpp).
   [[nodiscard]] std::array<Bernstein<3>, 3> along(const std::array<double, 3>& p, const std::array<double, 3>& q) const;
 
  private:

@@ -36,7 +36,7 @@ Vector3<double> voxel_gradient(const Grid& grid, const GradientFilter& filter, s
 Vector3<double> voxel_normal(const Grid& grid, const GradientFilter& filter, std::int64_t i, std::int64_t j,
                              std::int64_t k);
 
-/// Trilinear between the eight voxels around a position in voxel coordinates.
+/// The gradient at a position in voxel coordinates, trilinear between the eight voxels around it.
 Gradient gradient_at(const Grid& grid, const GradientFilter& filter, const std::array<double, 3>& position);
 
 namespace catalogue {

@@ -19,7 +19,7 @@ class TextureLookUps : public OnEveryGl {};
 
 float random(std::uint64_t index) { return static_cast<float>(random_numbers(5, RandomStream::points, index)[0]); }
 
-/// Of numbers in [0, 1), or of zeros and ones, which every format keeps as they are.
+/// A texture of numbers in [0, 1), or of zeros and ones, which every format keeps as they are.
 Texture random_texture(std::size_t dimensions, std::size_t channels, bool is_binary) {
   Texture texture{.dimensions = dimensions, .channels = channels};
   const std::array<std::int64_t, 3> sides{13, 7, 5};
@@ -68,7 +68,8 @@ TEST_P(TextureLookUps, EmulationIsThatOfTheCpu) {
         const auto coordinates = random_coordinates(dimensions);
         const auto found =
             look_up_in_shader(*device, texture, format, coordinates, {.is_emulated = true, .weight_bits = weight_bits});
-        // The same operations on the same numbers; where a compiler contracts them, a few ulps of 1.
+        // Both do the same operations on the same numbers; where a compiler contracts them, they differ by a few ulps
+        // of 1.
         EXPECT_LE(largest_difference(found, TextureUnit<Binary32>(texture, weight_bits), coordinates, dimensions),
                   0x1p-22);
       }

@@ -130,7 +130,7 @@ LinearPiece<Degree> random_piece(std::uint64_t index, double depth, double low =
   return piece;
 }
 
-/// The same integrals in 50 digits, by Gauss's rule on many parts.
+/// The integrals of a piece in 50 digits, by Gauss's rule on many parts.
 template <int Degree>
 std::array<Real50, 3> exact_integrals(const LinearPiece<Degree>& piece, Emission emission) {
   Bernstein<Degree, Real50> x;

@@ -29,7 +29,7 @@ using testing_support::in_50_digits;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Of the truth, for signals of order 1 to 10^6.
+// How far the truth is off, for signals of order 1 to 10^6.
 constexpr double rounding_of_50_digits = 1e-42;
 
 using Signal = std::function<Real50(const Real50& t)>;
@@ -99,7 +99,7 @@ Comparison expect_tricubic(const Grid& grid, CubicKernel kernel, const Ray& ray)
   return expect_bounds([&](const Real50& t) { return tricubic_value(grid, kernel, exact.point(t)); }, chain, error);
 }
 
-/// Through the middle of all of the grid, from `distance` of its diagonals away; directions are no unit vectors.
+/// A ray through the middle of all of the grid, from `distance` of its diagonals away; directions are no unit vectors.
 Ray long_ray(const Grid& grid, std::uint64_t index, double distance = 2) {
   const auto u = random_numbers(3, RandomStream::points, index, 0);
   const auto v = random_numbers(3, RandomStream::points, index, 1);

@@ -170,7 +170,8 @@ TEST(ShadedRenderer, MethodsTendToTheReferenceWithTheirSamples) {
     scene.step = 0.2;
     const double coarse = largest_difference(image_of(scene), truth);
     scene.step = 0.05;
-    // Of second order where normals turn smoothly; they turn by up to 180 degrees where the gradient nearly vanishes.
+    // It converges by second order where normals turn smoothly; they turn by up to 180 degrees where the gradient
+    // nearly vanishes.
     EXPECT_LT(largest_difference(image_of(scene), truth), coarse / 2) << name;
   }
 }

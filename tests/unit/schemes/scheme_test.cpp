@@ -200,7 +200,7 @@ TEST(EveryScheme, CountsItsFetches) {
 }
 
 TEST(EveryScheme, TellsBinary32FromBinary64ByRounding) {
-  // The same text in binary32 is within a few ulps of binary64.
+  // A rule's text in binary32 is within a few ulps of binary64.
   const auto close = [](const auto& b32, const auto& b64) {
     for (int i = 0; i < 4; ++i) EXPECT_NEAR(to_double(b32[i]), b64[i], 16 * 0x1p-24);
   };

@@ -86,7 +86,7 @@ TEST(Highlight, MinimaxMembersDeviateAsFarToOneSideAsToTheOther) {
 }
 
 TEST(Highlight, MinimaxExponentsTendToALimit) {
-  // Of the cone the limit solves 1 - k + k log(k) = exp(-1/k): both of its extremes have a closed form.
+  // The limit of the cone solves 1 - k + k log(k) = exp(-1/k): both of its extremes have a closed form.
   const double k = minimax_ratio(infinity, 1);
   EXPECT_NEAR(1 - k + k * std::log(k), std::exp(-1 / k), 1e-14);
   for (int degree = 1; degree <= 3; ++degree)

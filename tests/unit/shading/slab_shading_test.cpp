@@ -16,7 +16,7 @@
 namespace raytruth {
 namespace {
 
-/// Not with nearly opposite normals, between which curves are singular or nearly so.
+/// A slab without nearly opposite normals, between which curves are singular or nearly so.
 LitSlab tame_slab(std::uint64_t index) {
   LitSlab result = random_slab(11, index);
   if (result.slab.cosine() < -0.9) result.slab.back_normal = -result.slab.back_normal;
@@ -43,7 +43,7 @@ void expect_near(const ShadedRadiance& found, const ShadedRadiance& truth, doubl
   EXPECT_LE(std::abs(found.opacity - truth.opacity), tolerance) << what << ", opacity";
 }
 
-/// Of integrals in binary64 on panels of a relative error of some 1e-15 each.
+/// What integrals in binary64 may be off, on panels of a relative error of some 1e-15 each.
 constexpr double allowed = 2e-13;
 
 TEST(SlabShading, EveryCubicIsIntegratedAsTheCertifiedReferenceDoes) {

@@ -39,7 +39,7 @@ TEST(Tricubic, EveryPieceAgreesWith64VoxelsIn50Digits) {
           worst = std::max(worst, std::abs(to_double(Real50(piece.polynomial.value(piece.local(t))) - truth)));
         }
     }
-    // Of the data range, here 1.
+    // The bound is in units of the data range, here 1.
     EXPECT_LE(worst, 8 * epsilon);
   }
 }

@@ -25,7 +25,7 @@ using testing_support::in_50_digits;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-// Of the data range, here 1.
+// Units are those of the data range, here 1.
 constexpr double few_ulps = 4 * epsilon;
 
 Grid noise(std::array<std::int64_t, 3> size) {
@@ -81,7 +81,7 @@ TEST(Trilinear, RandomRaysAreExact) {
   for (std::uint64_t i = 0; i < 200; ++i) {
     Ray ray = random_ray(grid, 6, 1, i);
     expect_exact(grid, ray);
-    // The same line from outside, through the whole grid.
+    // Now the line comes from outside, and goes through the whole grid.
     for (std::size_t axis = 0; axis < 3; ++axis) ray.origin[axis] -= 30 * ray.direction[axis];
     ray.length = std::numeric_limits<double>::infinity();
     expect_exact(grid, ray);

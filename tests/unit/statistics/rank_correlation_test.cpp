@@ -9,7 +9,7 @@ namespace {
 
 TEST(RankCorrelation, OfPairsCountedByHand) {
   // Ranks of y: 2 1 4 3 5; their differences from those of x: 1 1 1 1 0. rho = 1 - 6 * 4 / (5 * 24).
-  // Of ten pairs of pairs two are discordant: tau = (8 - 2) / 10.
+  // Two of ten pairs of pairs are discordant: tau = (8 - 2) / 10.
   const std::vector<double> x{1, 2, 3, 4, 5};
   const std::vector<double> y{0.2, 0.1, 70, 0.3, 900};
   EXPECT_NEAR(spearman(x, y)->estimate, 0.8, 1e-15);

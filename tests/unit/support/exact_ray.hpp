@@ -23,7 +23,7 @@ struct ExactRay {
   }
 };
 
-/// By clipping against the six faces, with `unit` for the ray's direction.
+/// The ray by clipping against the six faces, with `unit` for the ray's direction.
 inline ExactRay exact_ray(const Grid& grid, const Ray& ray, const std::array<Real50, 3>& unit) {
   Real50 begin = 0;
   Real50 end("1e100");
@@ -49,13 +49,13 @@ inline ExactRay exact_ray(const Grid& grid, const Ray& ray, const std::array<Rea
   return result;
 }
 
-/// At the rounded unit direction.
+/// The ray at the rounded unit direction.
 inline ExactRay exact_ray(const Grid& grid, const Ray& ray) {
   const auto unit = unit_direction(ray.direction);
   return exact_ray(grid, ray, {unit[0], unit[1], unit[2]});
 }
 
-/// At the exactly normalised direction.
+/// The ray at the exactly normalised direction.
 inline ExactRay exactly_directed_ray(const Grid& grid, const Ray& ray) {
   std::array<Real50, 3> unit{ray.direction[0], ray.direction[1], ray.direction[2]};
   const Real50 norm = sqrt(unit[0] * unit[0] + unit[1] * unit[1] + unit[2] * unit[2]);

@@ -30,7 +30,7 @@ struct LitSlab {
   Lighting lighting;
 };
 
-/// Of any depth and direction; every highlight with every treatment of what faces away, in turn.
+/// A slab of any depth and direction; every highlight with every treatment of what faces away, in turn.
 inline LitSlab random_slab(std::uint64_t seed, std::uint64_t index) {
   const auto u = random_numbers(seed, RandomStream::points, index);
   LitSlab result;

@@ -346,7 +346,7 @@ std::vector<ConformanceVector> conformance_vectors(std::uint64_t seed) {
     for (int i = 0; i < rays_per_level + recipe.slabs; ++i) {
       const bool is_slab = i >= rays_per_level;
       const int index = is_slab ? i - rays_per_level : i;
-      // Not by parity alone: that decides within levels what a vector is like.
+      // The convention does not follow parity alone, which decides within levels what a vector is like.
       const auto emission = (index / 2 + index) % 2 == 0 ? Emission::associated : Emission::plain;
       Draws draws(seed, vectors.size());
       Problem problem = recipe.make(draws, {index, is_slab, emission});

@@ -30,14 +30,16 @@ struct FileTransfer {
   nlohmann::ordered_json description;
 };
 
-/// Reads the transfer functions that people have:
+/// Reads the transfer functions that people have, by the file's extension:
 ///
-/// | format | extension | opacity is that of | scalars |
-/// | --- | --- | --- | --- |
-/// | ParaView colour maps, VolView and ParaView Glance presets | .json | a smallest spacing (VTK's unit distance 1) |
-/// the data's | | 3D Slicer presets, scenes; volume properties | .xml, .mrml; .vp | the same | the data's | | Voreen |
-/// .tfi | 1/200 of the grid's longest side | 0 to 1, from the data's minimum to its maximum | | Inviwo | .itf | 1/150
-/// of the grid's longest side | the same |
+///     .json            colour maps of ParaView, presets of VolView and of ParaView Glance
+///     .xml .mrml .vp   presets, scenes and volume properties of 3D Slicer
+///     .tfi             Voreen
+///     .itf             Inviwo
+///
+/// Opacity is that of a smallest spacing (VTK's unit distance 1); in files of Voreen that of 1/200, of Inviwo that of
+/// 1/150 of the grid's longest side. Scalars are the data's own; in files of Voreen and Inviwo they run from 0 to 1,
+/// from the data's minimum to its maximum.
 ///
 /// Colour maps of ParaView are stretched from the data's minimum to its maximum unless they say "AbsoluteRange" or have
 /// opacities. RGB is taken as linear light. Opacity that depends on the gradient is refused unless it is ignored on

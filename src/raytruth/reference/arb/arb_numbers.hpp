@@ -87,7 +87,7 @@ class Ball {
     return *this;
   }
 
-  /// Certainly so; not certain is false.
+  /// Whether it is certainly so; not certain is false.
   friend bool operator<(const Ball& a, const Ball& b) { return arb_lt(a.x_, b.x_) != 0; }
   friend bool operator<=(const Ball& a, const Ball& b) { return arb_le(a.x_, b.x_) != 0; }
 
@@ -199,7 +199,8 @@ class Polynomial {
     return sum.upper();
   }
 
-  /// Without the highest powers, which the constant covers on [-1, 1], as long as they are below 2^-bits of the rest.
+  /// The polynomial without the highest powers, which the constant covers on [-1, 1], as long as they are below 2^-bits
+  /// of the rest.
   [[nodiscard]] Polynomial trimmed(slong bits) const {
     Polynomial result = *this;
     Ball tolerance = magnitude();

@@ -9,7 +9,7 @@
 
 namespace raytruth::arb {
 
-/// A stretch of a ray on which a polynomial in x on [0, 1] encloses the signal: t = start + length x.
+/// A piece of a ray: a polynomial in x on [0, 1] that encloses the signal, t = start + length x.
 struct Piece {
   Polynomial signal;
   std::vector<Ball> control;  ///< its Bernstein coefficients

@@ -87,7 +87,7 @@ std::optional<std::size_t> PointsCut::common_interval(const std::vector<Ball>& c
            (interval == points_.size() || s <= Ball(points_[interval]));
   };
   if (std::all_of(control.begin(), control.end(), is_inside)) return interval;
-  // From a point downwards.
+  // The control points may also lie from a point downwards.
   const auto is_below = [&](const Ball& s) {
     return (interval == 1 || Ball(points_[interval - 2]) <= s) && s <= Ball(points_[interval - 1]);
   };

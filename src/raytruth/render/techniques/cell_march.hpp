@@ -38,7 +38,7 @@ class CellMarch {
   [[nodiscard]] Emission emission() const { return emission_; }
   [[nodiscard]] double opaque() const { return opaque_; }
 
-  /// Of the cell whose low corner is this padded voxel.
+  /// Whether the cell whose low corner is this padded voxel is clear.
   [[nodiscard]] bool is_clear(std::int64_t voxel) const {
     return (clear_cells_[static_cast<std::size_t>(voxel >> 6)] >> (voxel & 63) & 1) != 0;
   }
@@ -58,7 +58,7 @@ class CellRay {
   CellRay(const CellMarch& march, const PiecewiseLinear& transfer, Emission emission)
       : march_(march), integrate_(transfer, emission) {}
 
-  /// As TableMarch's.
+  /// Light and opacity, and `parts`, as TableMarch has them.
   Eigen::Array4d operator()(const PixelRay& pixel, const std::optional<std::span<const RayPart>>& parts);
 
  private:

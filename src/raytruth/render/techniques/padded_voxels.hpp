@@ -15,7 +15,7 @@ class PaddedVoxels {
  public:
   explicit PaddedVoxels(const Grid& grid, double low = 0, double scale = 1);
 
-  /// Of voxel (i - 1, j - 1, k - 1) of the grid.
+  /// Where voxel (i - 1, j - 1, k - 1) of the grid lies.
   [[nodiscard]] const float* at(std::int64_t i, std::int64_t j, std::int64_t k) const {
     return values_.data() + (i + j * stride_[0] + k * stride_[1]);
   }

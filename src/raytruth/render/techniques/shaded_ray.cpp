@@ -110,7 +110,7 @@ std::array<std::int64_t, 3> LitView::cell_at(double t) const {
 
 namespace {
 
-/// In the cell's own coordinates.
+/// The position in the cell's own coordinates.
 std::array<double, 3> local(const std::array<double, 3>& position, const std::array<std::int64_t, 3>& cell) {
   std::array<double, 3> result{};
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -235,7 +235,7 @@ void ShadedRay<Degree>::add_by_method(const LitView& view, double begin, double 
     return result;
   };
   const LitSum one = add(&LitPoint::specular);
-  // Of two integrals of the highlight the larger one counts.
+  // The larger one of the two integrals of the highlight counts.
   if (shader.has_two_highlights) {
     const LitSum other = add(&LitPoint::other_specular);
     sum = one;

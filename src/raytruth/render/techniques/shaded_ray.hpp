@@ -69,7 +69,7 @@ void refuse_unlit(const Scene& scene);
 template <int Degree>
 class ShadedRay {
  public:
-  /// Of a scene that `refuse_unlit` does not refuse.
+  /// The scene must be one that `refuse_unlit` does not refuse.
   explicit ShadedRay(const Scene& scene);
 
   PixelLight operator()(const PixelRay& pixel, const Chain<Degree>& signal, const Samples<double>& samples,

@@ -100,7 +100,7 @@ Eigen::Array4d ShadedTable::operator()(double front, double back, double share, 
     matter += cubics(k, 0) * slab.segment<3>(4 * k);
     white += slab[4 * k + 3] * cubics.row(k).tail<3>().transpose().array();
   }
-  // Of two integrals of the highlight the larger one counts.
+  // The larger one of the two integrals of the highlight counts.
   if (shader.has_two_highlights) white = white.max(slab[tent] * model(0, shader.at(0.5, 0).other_specular).white);
   Eigen::Array4d result;
   result << matter + white, slab[opacity];

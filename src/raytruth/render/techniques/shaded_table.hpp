@@ -20,8 +20,8 @@ namespace raytruth {
 /// renderer with these tables shows.
 class ShadedTable {
  public:
-  /// Of the builders, `exact` integrates every entry and `subrange_means` makes them by subranges (tables/moments.hpp).
-  /// Throws InputError for others, for tables beyond `largest_size`, and for methods that no table can have.
+  /// The builder `exact` integrates every entry, `subrange_means` makes them by subranges (tables/moments.hpp). Throws
+  /// InputError for others, for tables beyond `largest_size`, and for methods that no table can have.
   ShadedTable(const Scene& scene, const TableAxes& axes);
 
   /// A table takes 144 bytes for each entry.

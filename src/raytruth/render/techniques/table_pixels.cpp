@@ -23,10 +23,10 @@ namespace raytruth {
 
 namespace {
 
-/// Intervals from sample to sample that are one slab of a table.
+/// How many intervals from sample to sample are one slab of a table.
 std::size_t slab_intervals(const Scene& scene) { return scene.scheme == "order2" ? 2 : 1; }
 
-/// Of the slabs that a table holds.
+/// The length of the slabs that a table holds.
 double table_length(const Scene& scene) { return static_cast<double>(slab_intervals(scene)) * scene.step.value_or(1); }
 
 Eigen::Array4d corrected_slab(const Eigen::Array4d& slab, double share) {
@@ -139,7 +139,7 @@ TableAxes table_axes(const Scene& scene) {
   return {.size = scene.table->size, .low = low, .high = low < high ? high : low + 1, .length = table_length(scene)};
 }
 
-/// Of second order; of 4 numbers for every entry in binary32.
+/// The table of second order; 4 numbers for every entry in binary32.
 Table3<float> second_order_table_of(const Scene& scene) {
   const SceneTable& asked = *scene.table;
   const SecondOrderBuilder* const builder = find_named(catalogue::second_order_builders, asked.builder);
@@ -190,7 +190,7 @@ PixelRendererFactory prepare_shaded(const PreparedScene& prepared) {
   });
 }
 
-/// By TableMarch.
+/// Renders by TableMarch.
 PixelRendererFactory prepare_march(const PreparedScene& prepared) {
   const Scene& scene = prepared.scene;
   const auto march =

@@ -64,7 +64,7 @@ std::span<const PhantomPart> phantom_parts();
 
 /// Throws FieldOptionError.
 void check(const CtPhantom& phantom);
-/// The same bytes on any number of threads.
+/// Makes the same bytes on any number of threads.
 Grid make_grid(const CtPhantom& phantom);
 
 }  // namespace raytruth

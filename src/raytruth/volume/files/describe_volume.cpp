@@ -22,7 +22,7 @@ std::uint64_t count_levels(const Volume& volume) {
     tbb::parallel_sort(sorted.begin(), sorted.end());
     return static_cast<std::uint64_t>(std::unique(sorted.begin(), sorted.end()) - sorted.begin());
   }
-  // At most 65536 levels, most of them repeated by the next voxel.
+  // There are at most 65536 levels, and most are repeated by the next voxel.
   std::unordered_set<double> levels{values.front()};
   double previous = values.front();
   for (const double value : values) {

@@ -362,7 +362,7 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
     if (state->byteSkip >= 0) {
       piece.skip = static_cast<std::uint64_t>(state->byteSkip);
     } else if (state->byteSkip == -1 && volume.encoding == Encoding::raw) {
-      // -1: the data are the last bytes of the file.
+      // With -1 the data are the last bytes of the file.
       const auto bytes = ByteStream(piece.file, piece.offset).most_bytes();
       if (bytes < piece_bytes) {
         refuse(piece.file, fmt::format("the file has {} bytes of data", bytes),

@@ -83,7 +83,7 @@ void add_binary(ByteStream& stream, std::uint64_t count, const StoredVolume::Pie
   }
 }
 
-/// Numbers apart by white space or commas.
+/// Numbers that white space or commas separate.
 class Words {
  public:
   explicit Words(ByteStream& stream) : stream_(stream), buffer_(std::size_t{1} << 16U) {}
@@ -182,7 +182,7 @@ auto adder(VoxelType type) {
 void check_capacity(const StoredVolume::Piece& piece, std::uint64_t count, const Volume& volume) {
   const bool ascii = volume.encoding == Encoding::ascii;
   const auto most = ByteStream(piece.file, piece.offset, volume.encoding == Encoding::gzip).most_bytes();
-  // ASCII: a digit each, and something between two of them.
+  // In ASCII every voxel takes a digit, and something stands between two of them.
   const auto least = ascii ? 2 * count - 1 : count * static_cast<std::uint64_t>(facts(volume.type).bytes);
   if (piece.skip > most || least > most - piece.skip) {
     refuse(piece.file,
