@@ -61,9 +61,11 @@ struct RecordColumn {
   std::string name;
   std::string unit = {};  ///< empty for words and counts
   std::string description = {};
-  bool is_key = false;       ///< the row's identity: rows of two results correspond where their keys agree
-  std::string radius = {};   ///< the column that holds this one's radius; empty: exact
-  CellOf<Record> cell = {};  ///< empty: described here, written where `written_here` stands
+  bool is_key = false;      ///< the row's identity: rows of two results correspond where their keys agree
+  std::string radius = {};  ///< the column that holds this one's radius; empty: exact
+  /// Empty: described here, written where `written_here` stands. In a braced list it is then written as `.cell = {}`,
+  /// for GCC 12 breaks off where it is left out.
+  CellOf<Record> cell = {};
 };
 
 /// The columns of a measure, in the order in which its rows write them.

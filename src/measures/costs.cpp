@@ -135,10 +135,10 @@ std::vector<Record> records(const Experiment& /*experiment*/, const Options& opt
 
 extern const Measure costs_measure;
 const Measure costs_measure{
-    MeasureDefinition{.name = "costs",
-                      .summary = "ratios of times that the benchmarks' reports hold, each of one run",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+    MeasureDefinition<Options, Record>{.name = "costs",
+                                       .summary = "ratios of times that the benchmarks' reports hold, each of one run",
+                                       .read = read_options,
+                                       .columns = columns,
+                                       .of_experiment = records}};
 
 }  // namespace raytruth

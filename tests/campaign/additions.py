@@ -112,7 +112,7 @@ std::vector<Record> records(const Experiment& /*experiment*/, const Options& opt
 }  // namespace
 
 extern const Measure toy_count_measure;
-const Measure toy_count_measure{MeasureDefinition{.name = "toy_count",
+const Measure toy_count_measure{MeasureDefinition<Options, Record>{.name = "toy_count",
                                           .summary = "numbers and their squares",
                                           .read = read_options,
                                           .columns = columns,

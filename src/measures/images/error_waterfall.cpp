@@ -342,7 +342,7 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 }  // namespace
 
 extern const Measure error_waterfall_measure;
-const Measure error_waterfall_measure{MeasureDefinition{
+const Measure error_waterfall_measure{MeasureDefinition<Options, Record>{
     .name = "error_waterfall",
     .summary = "what each stage of a renderer adds to an image's error, and what their interaction does",
     .needs = {.transfers = true},

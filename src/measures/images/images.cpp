@@ -642,12 +642,12 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 }  // namespace
 
 extern const Measure images_measure;
-const Measure images_measure{
-    MeasureDefinition{.name = "images",
-                      .summary = "views of volumes in many ways, against the certified image and each other",
-                      .needs = {.transfers = true},
-                      .read = read_options,
-                      .columns = columns,
-                      .of_field = records_of_field}};
+const Measure images_measure{MeasureDefinition<Options, Record>{
+    .name = "images",
+    .summary = "views of volumes in many ways, against the certified image and each other",
+    .needs = {.transfers = true},
+    .read = read_options,
+    .columns = columns,
+    .of_field = records_of_field}};
 
 }  // namespace raytruth

@@ -93,12 +93,12 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
 }  // namespace
 
 extern const Measure conformance_measure;
-const Measure conformance_measure{
-    MeasureDefinition{.name = "conformance",
-                      .summary = "digits that a scheme's answers to the conformance vectors have right",
-                      .needs = {.schemes = true},
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure conformance_measure{MeasureDefinition<Options, Record>{
+    .name = "conformance",
+    .summary = "digits that a scheme's answers to the conformance vectors have right",
+    .needs = {.schemes = true},
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth

@@ -148,12 +148,12 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 }  // namespace
 
 extern const Measure integral_orders_measure;
-const Measure integral_orders_measure{
-    MeasureDefinition{.name = "integral_orders",
-                      .summary = "fitted orders of colour and opacity, refined inside cells and at constant steps",
-                      .needs = {.schemes = true, .transfers = true},
-                      .read = read_options,
-                      .columns = columns,
-                      .of_field = records_of_field}};
+const Measure integral_orders_measure{MeasureDefinition<Options, Record>{
+    .name = "integral_orders",
+    .summary = "fitted orders of colour and opacity, refined inside cells and at constant steps",
+    .needs = {.schemes = true, .transfers = true},
+    .read = read_options,
+    .columns = columns,
+    .of_field = records_of_field}};
 
 }  // namespace raytruth

@@ -178,12 +178,12 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 }  // namespace
 
 extern const Measure iterations_measure;
-const Measure iterations_measure{
-    MeasureDefinition{.name = "iterations",
-                      .summary = "errors of slabs that are summed up in N iterations, in steps of an 8-bit frame",
-                      .needs = {.transfers = true},
-                      .read = read_options,
-                      .columns = columns,
-                      .of_field = records_of_field}};
+const Measure iterations_measure{MeasureDefinition<Options, Record>{
+    .name = "iterations",
+    .summary = "errors of slabs that are summed up in N iterations, in steps of an 8-bit frame",
+    .needs = {.transfers = true},
+    .read = read_options,
+    .columns = columns,
+    .of_field = records_of_field}};
 
 }  // namespace raytruth

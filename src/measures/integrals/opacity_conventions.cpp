@@ -181,11 +181,11 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 }  // namespace
 
 extern const Measure opacity_conventions_measure;
-const Measure opacity_conventions_measure{
-    MeasureDefinition{.name = "opacity_conventions",
-                      .summary = "what it costs to take a table of one convention of opacity for another",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_field = records_of_field}};
+const Measure opacity_conventions_measure{MeasureDefinition<Options, Record>{
+    .name = "opacity_conventions",
+    .summary = "what it costs to take a table of one convention of opacity for another",
+    .read = read_options,
+    .columns = columns,
+    .of_field = records_of_field}};
 
 }  // namespace raytruth

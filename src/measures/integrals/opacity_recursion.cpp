@@ -163,11 +163,11 @@ std::vector<Record> records(const Experiment& /*experiment*/, const Options& opt
 }  // namespace
 
 extern const Measure opacity_recursion_measure;
-const Measure opacity_recursion_measure{
-    MeasureDefinition{.name = "opacity_recursion",
-                      .summary = "the opacity of a part of a stretch by Lee's recursion against the closed form",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure opacity_recursion_measure{MeasureDefinition<Options, Record>{
+    .name = "opacity_recursion",
+    .summary = "the opacity of a part of a stretch by Lee's recursion against the closed form",
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth

@@ -148,11 +148,11 @@ std::vector<Record> records_of_block(const Experiment& experiment, const Options
 
 extern const Measure reference_proof_measure;
 const Measure reference_proof_measure{
-    MeasureDefinition{.name = "reference_proof",
-                      .summary = "the certified reference against Arb: not one violation of a radius",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_block = records_of_block,
-                      .blocks = blocks}};
+    MeasureDefinition<Options, Record>{.name = "reference_proof",
+                                       .summary = "the certified reference against Arb: not one violation of a radius",
+                                       .read = read_options,
+                                       .columns = columns,
+                                       .of_block = records_of_block,
+                                       .blocks = blocks}};
 
 }  // namespace raytruth

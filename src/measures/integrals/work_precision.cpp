@@ -237,12 +237,12 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 }  // namespace
 
 extern const Measure work_precision_measure;
-const Measure work_precision_measure{
-    MeasureDefinition{.name = "work_precision",
-                      .summary = "errors of colour and opacity by their causes, against what a scheme reads and does",
-                      .needs = {.schemes = true, .transfers = true},
-                      .read = read_options,
-                      .columns = columns,
-                      .of_field = records_of_field}};
+const Measure work_precision_measure{MeasureDefinition<Options, Record>{
+    .name = "work_precision",
+    .summary = "errors of colour and opacity by their causes, against what a scheme reads and does",
+    .needs = {.schemes = true, .transfers = true},
+    .read = read_options,
+    .columns = columns,
+    .of_field = records_of_field}};
 
 }  // namespace raytruth

@@ -199,11 +199,11 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 
 extern const Measure xi_versus_integral_measure;
 const Measure xi_versus_integral_measure{
-    MeasureDefinition{.name = "xi_versus_integral",
-                      .summary = "rank correlation of xi and the errors of colour and opacity",
-                      .needs = {.signal_schemes = true, .usable_samplings = true, .transfers = true},
-                      .read = read_options,
-                      .columns = columns,
-                      .of_field = records_of_field}};
+    MeasureDefinition<Options, Record>{.name = "xi_versus_integral",
+                                       .summary = "rank correlation of xi and the errors of colour and opacity",
+                                       .needs = {.signal_schemes = true, .usable_samplings = true, .transfers = true},
+                                       .read = read_options,
+                                       .columns = columns,
+                                       .of_field = records_of_field}};
 
 }  // namespace raytruth

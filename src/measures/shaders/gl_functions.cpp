@@ -122,12 +122,12 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
 }  // namespace
 
 extern const Measure gl_functions_measure;
-const Measure gl_functions_measure{
-    MeasureDefinition{.name = "gl_functions",
-                      .summary = "local functions in GLSL, binary32, binary64 and 50 digits, each against the next",
-                      .uses_gl = true,
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure gl_functions_measure{MeasureDefinition<Options, Record>{
+    .name = "gl_functions",
+    .summary = "local functions in GLSL, binary32, binary64 and 50 digits, each against the next",
+    .uses_gl = true,
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth

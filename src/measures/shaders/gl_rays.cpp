@@ -187,13 +187,13 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 }  // namespace
 
 extern const Measure gl_rays_measure;
-const Measure gl_rays_measure{
-    MeasureDefinition{.name = "gl_rays",
-                      .summary = "errors of rays in a shader: of the method, and of each arithmetic down to GLSL",
-                      .uses_gl = true,
-                      .needs = {.schemes = true, .transfers = true},
-                      .read = read_options,
-                      .columns = columns,
-                      .of_field = records_of_field}};
+const Measure gl_rays_measure{MeasureDefinition<Options, Record>{
+    .name = "gl_rays",
+    .summary = "errors of rays in a shader: of the method, and of each arithmetic down to GLSL",
+    .uses_gl = true,
+    .needs = {.schemes = true, .transfers = true},
+    .read = read_options,
+    .columns = columns,
+    .of_field = records_of_field}};
 
 }  // namespace raytruth

@@ -269,12 +269,12 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 }  // namespace
 
 extern const Measure gl_renderer_measure;
-const Measure gl_renderer_measure{
-    MeasureDefinition{.name = "gl_renderer",
-                      .summary = "images of a hand-written renderer in GLSL, of the CPU, and certified ones",
-                      .uses_gl = true,
-                      .read = read_options,
-                      .columns = columns,
-                      .of_field = records_of_field}};
+const Measure gl_renderer_measure{MeasureDefinition<Options, Record>{
+    .name = "gl_renderer",
+    .summary = "images of a hand-written renderer in GLSL, of the CPU, and certified ones",
+    .uses_gl = true,
+    .read = read_options,
+    .columns = columns,
+    .of_field = records_of_field}};
 
 }  // namespace raytruth

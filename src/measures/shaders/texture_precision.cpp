@@ -357,21 +357,21 @@ std::vector<Record> volume_records(const Experiment& experiment, const VolumeOpt
 }  // namespace
 
 extern const Measure table_texture_precision_measure;
-const Measure table_texture_precision_measure{
-    MeasureDefinition{.name = "table_texture_precision",
-                      .summary = "look-ups of transfer functions and tables, by weights and formats of texels",
-                      .uses_gl = true,
-                      .read = read_table_options,
-                      .columns = table_columns,
-                      .of_experiment = table_records}};
+const Measure table_texture_precision_measure{MeasureDefinition<TableOptions, Record>{
+    .name = "table_texture_precision",
+    .summary = "look-ups of transfer functions and tables, by weights and formats of texels",
+    .uses_gl = true,
+    .read = read_table_options,
+    .columns = table_columns,
+    .of_experiment = table_records}};
 
 extern const Measure volume_texture_precision_measure;
 const Measure volume_texture_precision_measure{
-    MeasureDefinition{.name = "volume_texture_precision",
-                      .summary = "look-ups of volumes, by weights and formats of texels",
-                      .uses_gl = true,
-                      .read = read_volume_options,
-                      .columns = volume_columns,
-                      .of_field = volume_records}};
+    MeasureDefinition<VolumeOptions, Record>{.name = "volume_texture_precision",
+                                             .summary = "look-ups of volumes, by weights and formats of texels",
+                                             .uses_gl = true,
+                                             .read = read_volume_options,
+                                             .columns = volume_columns,
+                                             .of_field = volume_records}};
 
 }  // namespace raytruth

@@ -154,10 +154,10 @@ std::vector<Record> records(const Experiment& /*experiment*/, const Options& opt
 
 extern const Measure cone_lobe_measure;
 const Measure cone_lobe_measure{
-    MeasureDefinition{.name = "cone_lobe",
-                      .summary = "highlights that stand for the lobe: deviation, energy, threshold",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+    MeasureDefinition<Options, Record>{.name = "cone_lobe",
+                                       .summary = "highlights that stand for the lobe: deviation, energy, threshold",
+                                       .read = read_options,
+                                       .columns = columns,
+                                       .of_experiment = records}};
 
 }  // namespace raytruth

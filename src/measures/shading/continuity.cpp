@@ -196,11 +196,11 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
 }  // namespace
 
 extern const Measure continuity_measure;
-const Measure continuity_measure{
-    MeasureDefinition{.name = "continuity",
-                      .summary = "jumps of the light across the borders of slabs and of the cases of their shading",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure continuity_measure{MeasureDefinition<Options, Record>{
+    .name = "continuity",
+    .summary = "jumps of the light across the borders of slabs and of the cases of their shading",
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth

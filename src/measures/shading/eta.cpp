@@ -278,7 +278,7 @@ std::vector<Record> records(const Experiment& /*experiment*/, const Options& opt
 }  // namespace
 
 extern const Measure eta_measure;
-const Measure eta_measure{MeasureDefinition{
+const Measure eta_measure{MeasureDefinition<Options, Record>{
     .name = "eta",
     .summary = "the length and the direction of the normal between two samples, by ways to normalise it",
     .read = read_options,

@@ -232,11 +232,11 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 }  // namespace
 
 extern const Measure gradient_angles_measure;
-const Measure gradient_angles_measure{
-    MeasureDefinition{.name = "gradient_angles",
-                      .summary = "angles between the normals of consecutive samples, by ways to take gradients",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_field = records_of_field}};
+const Measure gradient_angles_measure{MeasureDefinition<Options, Record>{
+    .name = "gradient_angles",
+    .summary = "angles between the normals of consecutive samples, by ways to take gradients",
+    .read = read_options,
+    .columns = columns,
+    .of_field = records_of_field}};
 
 }  // namespace raytruth

@@ -127,11 +127,11 @@ std::vector<Record> records(const Experiment& /*experiment*/, const Options& opt
 }  // namespace
 
 extern const Measure normal_curves_measure;
-const Measure normal_curves_measure{
-    MeasureDefinition{.name = "normal_curves",
-                      .summary = "curves between two normals, point by point, and what light makes of them",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure normal_curves_measure{MeasureDefinition<Options, Record>{
+    .name = "normal_curves",
+    .summary = "curves between two normals, point by point, and what light makes of them",
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth

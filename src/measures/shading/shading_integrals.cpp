@@ -247,11 +247,11 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
 }  // namespace
 
 extern const Measure shading_integrals_measure;
-const Measure shading_integrals_measure{
-    MeasureDefinition{.name = "shading_integrals",
-                      .summary = "errors of the colour of whole slabs, and the share of slabs a method is best on",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure shading_integrals_measure{MeasureDefinition<Options, Record>{
+    .name = "shading_integrals",
+    .summary = "errors of the colour of whole slabs, and the share of slabs a method is best on",
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth

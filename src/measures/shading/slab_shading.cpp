@@ -177,11 +177,11 @@ std::vector<Record> records(const Experiment& /*experiment*/, const Options& opt
 }  // namespace
 
 extern const Measure slab_shading_measure;
-const Measure slab_shading_measure{
-    MeasureDefinition{.name = "slab_shading",
-                      .summary = "errors of the light along a slab, by methods, angles and places of the light",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure slab_shading_measure{MeasureDefinition<Options, Record>{
+    .name = "slab_shading",
+    .summary = "errors of the light along a slab, by methods, angles and places of the light",
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth

@@ -147,11 +147,11 @@ std::vector<Record> records(const Experiment& /*experiment*/, const Options& opt
 }  // namespace
 
 extern const Measure spheres_measure;
-const Measure spheres_measure{
-    MeasureDefinition{.name = "spheres",
-                      .summary = "pictures of a smooth and a bumpy sphere by several highlights, and their errors",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure spheres_measure{MeasureDefinition<Options, Record>{
+    .name = "spheres",
+    .summary = "pictures of a smooth and a bumpy sphere by several highlights, and their errors",
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth

@@ -117,7 +117,7 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 }  // namespace
 
 extern const Measure cell_cubic_measure;
-const Measure cell_cubic_measure{MeasureDefinition{
+const Measure cell_cubic_measure{MeasureDefinition<Options, Record>{
     .name = "cell_cubic",
     .summary = "whether a trilinear ray is a cubic inside each cell, and how its slope jumps between cells",
     .read = read_options,

@@ -307,13 +307,12 @@ std::vector<Record> records(const Experiment& /*experiment*/, const Options& opt
 
 }  // namespace
 
-// Not of the measure's own name, which is that of the function it studies.
 extern const Measure frequency_response_measure;
-const Measure frequency_response_measure{
-    MeasureDefinition{.name = "frequency_response",
-                      .summary = "Fourier transforms of the B-spline and of virtual samples, closed form and measured",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure frequency_response_measure{MeasureDefinition<Options, Record>{
+    .name = "frequency_response",
+    .summary = "Fourier transforms of the B-spline and of virtual samples, closed form and measured",
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth

@@ -270,11 +270,11 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
 }  // namespace
 
 extern const Measure minmax_bounds_measure;
-const Measure minmax_bounds_measure{
-    MeasureDefinition{.name = "minmax_bounds",
-                      .summary = "how far virtual samples leave the range of their data and of the block they lie in",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure minmax_bounds_measure{MeasureDefinition<Options, Record>{
+    .name = "minmax_bounds",
+    .summary = "how far virtual samples leave the range of their data and of the block they lie in",
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth

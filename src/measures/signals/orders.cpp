@@ -137,7 +137,7 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 }  // namespace
 
 extern const Measure orders_measure;
-const Measure orders_measure{MeasureDefinition{
+const Measure orders_measure{MeasureDefinition<Options, Record>{
     .name = "orders",
     .summary = "fitted orders of xi and xi_max, refined inside cells and at constant steps across them",
     .needs = {.signal_schemes = true},

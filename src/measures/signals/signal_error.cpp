@@ -337,7 +337,7 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 }  // namespace
 
 extern const Measure signal_error_measure;
-const Measure signal_error_measure{MeasureDefinition{
+const Measure signal_error_measure{MeasureDefinition<Options, Record>{
     .name = "signal_error",
     .summary = "xi and xi_max of every scheme along random rays: quantiles, and ratios between schemes",
     .needs = {.signal_schemes = true, .usable_samplings = true},

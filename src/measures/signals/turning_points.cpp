@@ -112,10 +112,11 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 }  // namespace
 
 extern const Measure turning_points_measure;
-const Measure turning_points_measure{MeasureDefinition{.name = "turning_points",
-                                                       .summary = "how often the cubic inside a cell turns twice",
-                                                       .read = read_options,
-                                                       .columns = columns,
-                                                       .of_field = records_of_field}};
+const Measure turning_points_measure{
+    MeasureDefinition<Options, Record>{.name = "turning_points",
+                                       .summary = "how often the cubic inside a cell turns twice",
+                                       .read = read_options,
+                                       .columns = columns,
+                                       .of_field = records_of_field}};
 
 }  // namespace raytruth

@@ -331,11 +331,11 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 }  // namespace
 
 extern const Measure virtual_samples_measure;
-const Measure virtual_samples_measure{
-    MeasureDefinition{.name = "virtual_samples",
-                      .summary = "RMSE, maximum and PSNR of virtual samples, and of fewer or trilinear ones",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_field = records_of_field}};
+const Measure virtual_samples_measure{MeasureDefinition<Options, Record>{
+    .name = "virtual_samples",
+    .summary = "RMSE, maximum and PSNR of virtual samples, and of fewer or trilinear ones",
+    .read = read_options,
+    .columns = columns,
+    .of_field = records_of_field}};
 
 }  // namespace raytruth

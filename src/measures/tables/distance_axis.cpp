@@ -153,11 +153,11 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
 }  // namespace
 
 extern const Measure distance_axis_measure;
-const Measure distance_axis_measure{
-    MeasureDefinition{.name = "distance_axis",
-                      .summary = "errors of tables for distances 2^j: the interpolation's and the algorithm's",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure distance_axis_measure{MeasureDefinition<Options, Record>{
+    .name = "distance_axis",
+    .summary = "errors of tables for distances 2^j: the interpolation's and the algorithm's",
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth

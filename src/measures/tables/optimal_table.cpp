@@ -639,13 +639,13 @@ std::vector<Record> conclusions(const Experiment& /*experiment*/, const Options&
 }  // namespace
 
 extern const Measure optimal_table_measure;
-const Measure optimal_table_measure{
-    MeasureDefinition{.name = "optimal_table",
-                      .summary = "the smallest table that an image needs, and how well it is predicted",
-                      .needs = {.transfers = true},
-                      .read = read_options,
-                      .columns = columns,
-                      .of_field = records_of_field,
-                      .conclusions = conclusions}};
+const Measure optimal_table_measure{MeasureDefinition<Options, Record>{
+    .name = "optimal_table",
+    .summary = "the smallest table that an image needs, and how well it is predicted",
+    .needs = {.transfers = true},
+    .read = read_options,
+    .columns = columns,
+    .of_field = records_of_field,
+    .conclusions = conclusions}};
 
 }  // namespace raytruth

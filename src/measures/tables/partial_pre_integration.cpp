@@ -120,11 +120,11 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
 }  // namespace
 
 extern const Measure partial_pre_integration_measure;
-const Measure partial_pre_integration_measure{
-    MeasureDefinition{.name = "partial_pre_integration",
-                      .summary = "errors of Moreland's partial pre-integration by the size of its table",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure partial_pre_integration_measure{MeasureDefinition<Options, Record>{
+    .name = "partial_pre_integration",
+    .summary = "errors of Moreland's partial pre-integration by the size of its table",
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth

@@ -255,13 +255,12 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
 
 }  // namespace
 
-// The function that makes such a table has the name without "_measure".
 extern const Measure second_order_table_measure;
-const Measure second_order_table_measure{
-    MeasureDefinition{.name = "second_order_table",
-                      .summary = "errors of tables of second order by iterations and size, and what they cost",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure second_order_table_measure{MeasureDefinition<Options, Record>{
+    .name = "second_order_table",
+    .summary = "errors of tables of second order by iterations and size, and what they cost",
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth

@@ -210,13 +210,12 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
 
 }  // namespace
 
-// The text of the compute shaders that make tables has the name without "_measure".
 extern const Measure table_builds_measure;
-const Measure table_builds_measure{
-    MeasureDefinition{.name = "table_builds",
-                      .summary = "composites and exponentials of table builders, and their differences to exact tables",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure table_builds_measure{MeasureDefinition<Options, Record>{
+    .name = "table_builds",
+    .summary = "composites and exponentials of table builders, and their differences to exact tables",
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth

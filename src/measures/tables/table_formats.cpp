@@ -124,13 +124,12 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
 
 }  // namespace
 
-// The list of formats has the name without "_measure".
 extern const Measure table_formats_measure;
-const Measure table_formats_measure{
-    MeasureDefinition{.name = "table_formats",
-                      .summary = "errors of look-ups by the format of the table and the weights of the texture unit",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure table_formats_measure{MeasureDefinition<Options, Record>{
+    .name = "table_formats",
+    .summary = "errors of look-ups by the format of the table and the weights of the texture unit",
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth

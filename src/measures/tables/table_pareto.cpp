@@ -189,11 +189,11 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
 }  // namespace
 
 extern const Measure table_pareto_measure;
-const Measure table_pareto_measure{
-    MeasureDefinition{.name = "table_pareto",
-                      .summary = "the smallest table that reaches an accuracy, of all builders, sizes and formats",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure table_pareto_measure{MeasureDefinition<Options, Record>{
+    .name = "table_pareto",
+    .summary = "the smallest table that reaches an accuracy, of all builders, sizes and formats",
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth

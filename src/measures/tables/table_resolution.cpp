@@ -216,18 +216,18 @@ std::vector<Line> lines(const Experiment& experiment, const Map& map) {
 }  // namespace
 
 extern const Measure table_resolution_measure;
-const Measure table_resolution_measure{
-    MeasureDefinition{.name = "table_resolution",
-                      .summary = "errors of look-ups in exact tables against their size, and their orders",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure table_resolution_measure{MeasureDefinition<Options, Record>{
+    .name = "table_resolution",
+    .summary = "errors of look-ups in exact tables against their size, and their orders",
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 extern const Measure table_error_map_measure;
-const Measure table_error_map_measure{MeasureDefinition{.name = "table_error_map",
-                                                        .summary = "where on an exact table look-ups err",
-                                                        .read = read_map,
-                                                        .columns = line_columns,
-                                                        .of_experiment = lines}};
+const Measure table_error_map_measure{MeasureDefinition<Map, Line>{.name = "table_error_map",
+                                                                   .summary = "where on an exact table look-ups err",
+                                                                   .read = read_map,
+                                                                   .columns = line_columns,
+                                                                   .of_experiment = lines}};
 
 }  // namespace raytruth

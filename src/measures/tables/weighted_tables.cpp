@@ -243,13 +243,12 @@ std::vector<Record> records(const Experiment& experiment, const TableStudy& aske
 
 }  // namespace
 
-// The function that makes such tables has the name without "_measure".
 extern const Measure weighted_tables_measure;
-const Measure weighted_tables_measure{
-    MeasureDefinition{.name = "weighted_tables",
-                      .summary = "digits that weighted tables lose, as the printed difference and as sums",
-                      .read = read_options,
-                      .columns = columns,
-                      .of_experiment = records}};
+const Measure weighted_tables_measure{MeasureDefinition<TableStudy, Record>{
+    .name = "weighted_tables",
+    .summary = "digits that weighted tables lose, as the printed difference and as sums",
+    .read = read_options,
+    .columns = columns,
+    .of_experiment = records}};
 
 }  // namespace raytruth
