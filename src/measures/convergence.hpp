@@ -26,7 +26,7 @@ inline constexpr std::array regimes{std::pair{Regime::cells, std::string_view("c
 /// Steps 2^-3 to 2^-8.
 inline constexpr std::size_t level_count = 6;
 
-/// Of a cell or of a voxel.
+/// In cells or voxels.
 double step_of(std::size_t level);
 
 void sample(const Chain<3>& signal, Regime regime, std::size_t level, Samples<double>& samples);

@@ -35,7 +35,7 @@ struct QuantityErrors {
   double max = 0;
 };
 
-/// The same of opacity and colour; none without rays.
+/// Both summaries, of opacity and of colour; none without rays.
 struct ErrorSummary {
   std::optional<QuantityErrors> opacity;
   std::optional<QuantityErrors> color;

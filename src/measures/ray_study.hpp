@@ -48,7 +48,7 @@ struct TransferKeys {
 /// Keys of the rows: `transfer`, `emission`.
 Columns<TransferKeys> transfer_key_columns();
 
-/// Further keys: `sampling`, `step`.
+/// More keys: `sampling`, `step`.
 Columns<Sampling> sampling_key_columns();
 
 /// How many rays there were.
@@ -66,7 +66,7 @@ Columns<RayCounts> ray_count_columns();
 std::vector<Column> transfer_columns();
 Row transfer_keys(const Experiment& experiment, const NamedTransfer& transfer);
 
-/// Further keys: `sampling`, `step`.
+/// More keys: `sampling`, `step`.
 std::vector<Column> sampling_columns();
 void add_sampling(Row& row, const Sampling& sampling);
 

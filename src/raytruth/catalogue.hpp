@@ -6,6 +6,7 @@
 #include "raytruth/shading/highlight.hpp"
 #include "raytruth/shading/normal_curve.hpp"
 #include "raytruth/shading/slab_shading.hpp"
+#include "raytruth/signals/fields/generated_fields.hpp"
 #include "raytruth/signals/signal_kinds.hpp"
 #include "raytruth/tables/partial_pre_integration.hpp"
 #include "raytruth/tables/second_order.hpp"

@@ -151,7 +151,7 @@ def add_field():
     new(what, "src/raytruth/signals/fields/toy_slope.hpp", """#pragma once
 
 #include "raytruth/core/named.hpp"
-#include "raytruth/signals/fields/field_option.hpp"
+#include "raytruth/signals/field_option.hpp"
 #include "raytruth/volume/grid.hpp"
 
 #include <cstdint>

@@ -313,8 +313,8 @@ class ViewStudy {
     return add(variant.name, std::string(against)).comparison.emplace(std::move(found));
   }
 
-  /// Of the pixels in which two images differ by more than half a step of 8 bits, those in which the first is closer to
-  /// the reference; by the largest channel.
+  /// The share of pixels, among those in which two images differ by more than half a step of 8 bits, in which the first
+  /// is closer to the reference; by the largest channel.
   static std::optional<double> percent_closer(const Image& image, const Image& other, const Image& reference) {
     constexpr double half_a_step = 1.0 / 510;
     std::int64_t different = 0;
@@ -420,7 +420,7 @@ Columns<SceneTable> table_columns() {
   };
 }
 
-/// Of a comparison, up to what depends on other variants.
+/// What a comparison gives, up to what depends on other variants.
 Columns<Comparison> comparison_columns() {
   Columns<Comparison> columns{
       {.name = "scheme",

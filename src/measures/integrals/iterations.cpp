@@ -62,7 +62,7 @@ struct Trial {
   int pixel_steps = 0;  ///< largest difference of 8-bit values
 };
 
-/// Of every ray but the constant ones: by count.
+/// The errors of every ray but the constant ones, by count.
 using Trials = std::vector<std::optional<std::vector<Trial>>>;
 
 Trials measure_trials(const Experiment& experiment, const Field& field, const PiecewiseLinear& transfer,

@@ -20,7 +20,7 @@ namespace {
 
 double as_extinction(double x, double /*step*/) { return x; }
 
-/// Of an opacity below 1, whose extinction is finite.
+/// The extinction of an opacity below 1, which is finite.
 double as_opacity_of(double x, double length) { return extinction_of(std::min(x, largest_opacity), length); }
 
 double as_opacity(double x, double /*step*/) { return as_opacity_of(x, 1); }
@@ -78,7 +78,7 @@ Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   return options;
 }
 
-/// Of all rays but the constant ones.
+/// The errors of all rays but the constant ones.
 using Integrals = std::vector<std::optional<Certified>>;
 
 Integrals integrate(const Experiment& experiment, const Field& field, const PiecewiseLinear& transfer) {

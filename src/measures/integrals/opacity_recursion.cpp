@@ -50,7 +50,7 @@ Real by_power(Real opacity, std::int64_t parts) {
   return Real(1) - pow(Real(1) - opacity, Real(1 / static_cast<double>(parts)));
 }
 
-/// The same without the difference of nearly equal numbers; a whole is 1/n times as many parts.
+/// This form has no difference of nearly equal numbers; a whole is 1/n times as many parts.
 template <class Real>
 Real by_closed_form(Real opacity, double parts) {
   return Rules<Real>{}.opacity_correction(opacity, Real(1 / parts));

@@ -33,7 +33,7 @@ struct Trial {
   double radius = 0;
 };
 
-/// Of every ray but the constant ones: by scheme.
+/// What every ray but the constant ones gives, by scheme.
 using Trials = std::vector<std::optional<std::vector<Trial>>>;
 
 Trials measure_trials(const Experiment& experiment, const Field& field, const PiecewiseLinear& transfer,
@@ -126,7 +126,7 @@ Columns<std::optional<RankCorrelation>> correlation_columns(const std::string& n
           column("_high", &RankCorrelation::high, ": 95 % interval, high end")};
 }
 
-/// Of the correlations of xi and the errors of colour or opacity, `quantity`.
+/// Columns of the correlations of xi and the errors of colour or opacity, `quantity`.
 Columns<Correlations> correlations_columns(const std::string& quantity) {
   Columns<Correlations> columns;
   for (const auto& [name, correlation] :

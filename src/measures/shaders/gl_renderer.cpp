@@ -69,7 +69,7 @@ Grid drawn_grid(const Grid& grid, const TexturedScene& scene) {
   return drawn;
 }
 
-/// The same scene, drawn in every way.
+/// One scene, drawn in every way.
 struct Images {
   explicit Images(const std::array<std::int64_t, 2>& size)
       : certified(size), binary64(size), binary32(size), textures(size), rounded_weights(size), glsl(size) {}

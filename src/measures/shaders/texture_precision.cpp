@@ -59,7 +59,7 @@ std::vector<double> look_up(const LookUps& what, const Texture& texture, int wei
   return values;
 }
 
-/// The same by a shader.
+/// These look-ups by a shader.
 std::vector<double> look_up(GlDevice& device, const LookUps& what, TexelFormat format, const ShaderFilter& filter) {
   const std::vector<float> found = look_up_in_shader(device, what.texture, format, what.coordinates, filter);
   const std::size_t channels = what.texture.channels;

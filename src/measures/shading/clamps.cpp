@@ -55,7 +55,7 @@ using Input = std::array<double, 4>;
 
 double angle_of(const Input& input) { return input[0] - input[1]; }
 
-/// Of the light in the plane, from the bisector.
+/// The angle of the light in the plane, from the bisector.
 double in_plane_of(const Input& input) { return (input[0] + input[1]) / 2; }
 
 struct Treatment {

@@ -56,7 +56,7 @@ struct RayAngles {
 };
 
 double angle_between(const Vector3<double>& first, const Vector3<double>& second) {
-  // Of unit vectors; accurate for small angles too (W. Kahan, How futile are mindless assessments of roundoff, 2006).
+  // For unit vectors; accurate for small angles too (W. Kahan, How futile are mindless assessments of roundoff, 2006).
   return 2 * std::atan2((first - second).matrix().norm(), (first + second).matrix().norm()) * 180 /
          boost::math::constants::pi<double>();
 }
@@ -127,7 +127,7 @@ struct PairAngles {
       errors;
 };
 
-/// Of rays with one such pair at least.
+/// Counts of rays with one such pair at least.
 PairAngles pair_angles(const std::vector<RayAngles>& rays) {
   PairAngles result;
   for (std::size_t i = 0; i < counted_angles.size(); ++i) {

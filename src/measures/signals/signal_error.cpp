@@ -68,7 +68,7 @@ std::optional<double> find_printed(const Options& options, const std::string& sc
   return {};
 }
 
-/// Of every ray that is not constant.
+/// The errors of every ray that is not constant.
 struct Errors {
   std::vector<double> xi;
   std::vector<double> xi_max;

@@ -82,7 +82,7 @@ struct Reconstruction {
   const Grid& coefficients;
 };
 
-/// Of one method.
+/// What one method gives.
 struct Errors {
   SampleError all;
   SampleError between;  ///< true samples, that is where virtual ones are
@@ -94,7 +94,7 @@ struct Errors {
   }
 };
 
-/// Of all methods, with one reconstruction.
+/// What all methods give, with one reconstruction.
 using MethodErrors = std::array<Errors, methods.size()>;
 
 struct Scratch {

@@ -78,7 +78,7 @@ struct Record {
   [[nodiscard]] bool is_point() const { return !target.has_value(); }
 };
 
-/// Of the candidates that reach the target the one of the fewest bytes; of several the one of the least error.
+/// The candidate of the fewest bytes among those that reach the target; of several the one of the least error.
 const Candidate* smallest(const std::vector<Candidate>& candidates, double target) {
   const Candidate* best = nullptr;
   for (const Candidate& candidate : candidates)

@@ -52,7 +52,7 @@ struct Point {
   std::optional<TableError> before;  ///< of the size before, where there is one
 };
 
-/// Of each of `fitted`; none where the reference's radius supports fewer than two errors.
+/// The order of each of `fitted`; none where the reference's radius supports fewer than two errors.
 using Orders = std::array<std::optional<FittedOrder>, fitted.size()>;
 
 /// Over the steps 1 / (n - 1).
@@ -149,7 +149,7 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
   return records;
 }
 
-/// Of the second measure, a map of the errors of one table.
+/// Options of the second measure, a map of the errors of one table.
 struct Map {
   std::vector<std::string> shapes;
   double optical_depth = 0;

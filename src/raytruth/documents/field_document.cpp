@@ -1,7 +1,7 @@
 #include "raytruth/documents/field_document.hpp"
 
 #include "raytruth/core/named.hpp"
-#include "raytruth/signals/signal_kinds.hpp"
+#include "raytruth/signals/fields/generated_fields.hpp"
 #include "raytruth/volume/files/read_volume.hpp"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 
 #include "raytruth/core/chain.hpp"
 #include "raytruth/core/named.hpp"
-#include "raytruth/signals/fields/field_option.hpp"
+#include "raytruth/signals/field_option.hpp"
 #include "raytruth/signals/ray.hpp"
 #include "raytruth/volume/grid.hpp"
 

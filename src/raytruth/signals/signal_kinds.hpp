@@ -1,9 +1,7 @@
 #pragma once
 
 #include "raytruth/core/named.hpp"
-#include "raytruth/signals/fields/generated_fields.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace raytruth::catalogue {
@@ -16,13 +14,5 @@ inline constexpr std::array signals{
     Named{"marschner_lobb", "the Marschner-Lobb signal itself along a ray through [-1, 1]^3"},
     Named{"analytic", "a test signal with a name: sines, Gaussians, a chirp, a step, a kink"},
 };
-
-/// Where voxels come from: a generator, or a file.
-inline constexpr auto fields = [] {
-  std::array<Named, generated_field_kinds.size() + 1> kinds{};
-  std::copy(generated_field_kinds.begin(), generated_field_kinds.end(), kinds.begin());
-  kinds.back() = {"volume", "a file, NRRD or NIfTI, found by name"};
-  return kinds;
-}();
 
 }  // namespace raytruth::catalogue

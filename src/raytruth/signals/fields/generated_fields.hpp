@@ -8,6 +8,7 @@
 #include "raytruth/signals/random_field.hpp"
 #include "raytruth/volume/grid.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <utility>
@@ -29,5 +30,17 @@ inline constexpr auto generated_field_kinds = []<std::size_t... index>(std::inde
 inline Grid make_grid(const GeneratedField& field) {
   return std::visit([](const auto& generated) { return make_grid(generated); }, field);
 }
+
+namespace catalogue {
+
+/// Where voxels come from: a generator, or a file.
+inline constexpr auto fields = [] {
+  std::array<Named, generated_field_kinds.size() + 1> kinds{};
+  std::copy(generated_field_kinds.begin(), generated_field_kinds.end(), kinds.begin());
+  kinds.back() = {"volume", "a file, NRRD or NIfTI, found by name"};
+  return kinds;
+}();
+
+}  // namespace catalogue
 
 }  // namespace raytruth

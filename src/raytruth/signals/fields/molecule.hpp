@@ -1,7 +1,7 @@
 #pragma once
 
 #include "raytruth/core/named.hpp"
-#include "raytruth/signals/fields/field_option.hpp"
+#include "raytruth/signals/field_option.hpp"
 #include "raytruth/volume/grid.hpp"
 
 #include <array>
