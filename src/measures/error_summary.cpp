@@ -30,21 +30,6 @@ QuantityErrors summary_of_quantity(const RayErrors& errors, double bias, double 
           .max = quantile(magnitudes, 1) * scale};
 }
 
-void add_summary(Row& row, const std::string& name, const RayErrors& errors, double bias, double rms,
-                 double (*magnitude)(const Difference&), double scale) {
-  std::vector<double> magnitudes;
-  magnitudes.reserve(errors.rays.size());
-  for (const Difference& error : errors.rays) magnitudes.push_back(magnitude(error));
-  std::sort(magnitudes.begin(), magnitudes.end());
-  const auto cell = [&](double value) { return magnitudes.empty() ? Value() : Value(value * scale); };
-  const auto at = [&](double probability) { return magnitudes.empty() ? 0 : quantile(magnitudes, probability); };
-  row.insert(row.end(), {{name + "_bias", cell(bias)},
-                         {name + "_rms", cell(rms)},
-                         {name + "_p50", cell(at(0.5))},
-                         {name + "_p95", cell(at(0.95))},
-                         {name + "_max", cell(at(1))}});
-}
-
 }  // namespace
 
 void RayErrors::add(const Difference& error, double error_radius) {
@@ -102,39 +87,6 @@ Columns<ErrorSummary> error_summary_columns(const std::string& unit, const std::
                      .description = "bound on the error of the errors: the reference's",
                      .cell = &ErrorSummary::radius});
   return columns;
-}
-
-std::vector<Column> error_columns(const std::string& unit, const std::string& of_what) {
-  std::vector<Column> columns;
-  for (const std::string name : {"opacity", "color"}) {
-    const bool is_color = name == "color";
-    const auto add = [&](const std::string& suffix, const std::string& description) {
-      columns.push_back({.name = name + suffix,
-                         .unit = unit,
-                         .description = fmt::format("{} of {}: {}", name, of_what, description),
-                         .is_key = false,
-                         .radius = "radius"});
-    };
-    const std::string over = is_color ? "over rays and channels" : "over rays";
-    const std::string magnitude = is_color ? "the largest magnitude among the channels" : "the magnitude";
-    add("_bias", "mean of the signed error " + over);
-    add("_rms", "root mean square of the error " + over);
-    add("_p50", "median over rays of " + magnitude);
-    add("_p95", "95th percentile over rays of " + magnitude);
-    add("_max", "maximum over rays of " + magnitude);
-  }
-  columns.push_back(
-      {.name = "radius", .unit = unit, .description = "bound on the error of the errors: the reference's"});
-  return columns;
-}
-
-void add_errors(Row& row, const RayErrors& errors, double scale) {
-  add_summary(
-      row, "opacity", errors, mean_of(errors, [](const Difference& error) { return error.opacity; }),
-      rms_opacity(errors), [](const Difference& error) { return std::abs(error.opacity); }, scale);
-  add_summary(row, "color", errors, mean_of(errors, [](const Difference& error) { return error.color.mean(); }),
-              rms_color(errors), color_magnitude, scale);
-  row.emplace_back("radius", errors.radius * scale);
 }
 
 }  // namespace raytruth

@@ -48,11 +48,4 @@ ErrorSummary summary_of(const RayErrors& errors, double scale = 1);
 /// NAME_bias, NAME_rms, NAME_p50, NAME_p95 and NAME_max for opacity and colour; and `radius`.
 Columns<ErrorSummary> error_summary_columns(const std::string& unit, const std::string& of_what);
 
-/// The columns that `add_errors` fills in: for opacity and colour bias (the signed mean), root mean square, and of the
-/// magnitudes median, 95th percentile and maximum; and `radius`.
-std::vector<Column> error_columns(const std::string& unit, const std::string& of_what);
-
-/// The cells of these columns, times `scale`; null without rays.
-void add_errors(Row& row, const RayErrors& errors, double scale = 1);
-
 }  // namespace raytruth

@@ -25,11 +25,4 @@ ShownQuantiles shown_quantiles(const std::vector<double>& sorted, double scale =
 Columns<ShownQuantiles> shown_quantile_columns(const std::string& name, const std::string& unit,
                                                const std::string& description, const std::string& radius = {});
 
-/// NAME_p05 ... NAME_p95. `radius` names the column that bounds their rounding error; empty: none.
-std::vector<Column> quantile_columns(const std::string& name, const std::string& unit, const std::string& description,
-                                     const std::string& radius = {});
-
-/// The cells of these columns: quantiles of ascending values, times `scale`; null where there are no values.
-void add_quantiles(Row& row, const std::string& name, const std::vector<double>& sorted, double scale = 1);
-
 }  // namespace raytruth

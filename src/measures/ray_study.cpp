@@ -81,37 +81,4 @@ Columns<RayCounts> ray_count_columns() {
            .cell = &RayCounts::constant}};
 }
 
-std::vector<Column> transfer_columns() {
-  return {{.name = "transfer", .unit = "", .description = "the transfer function", .is_key = true},
-          {.name = "emission",
-           .unit = "",
-           .description = "associated: q = extinction times color; plain: q = color",
-           .is_key = true}};
-}
-
-std::vector<Column> sampling_columns() {
-  return {
-      {.name = "sampling", .unit = "", .description = "where samples are taken", .is_key = true},
-      {.name = "step", .unit = "voxel", .description = "distance of samples, constant sampling only", .is_key = true}};
-}
-
-void add_sampling(Row& row, const Sampling& sampling) {
-  row.emplace_back("sampling", sampling.kind);
-  row.emplace_back("step", sampling.step ? Value(*sampling.step) : Value());
-}
-
-std::vector<Column> count_columns() {
-  return {{.name = "rays", .unit = "", .description = "rays drawn"},
-          {.name = "rays_constant", .unit = "", .description = "of these, rays with a constant signal, left out"}};
-}
-
-void add_counts(Row& row, const Experiment& experiment, std::size_t studied) {
-  row.emplace_back("rays", experiment.rays.count);
-  row.emplace_back("rays_constant", experiment.rays.count - static_cast<std::int64_t>(studied));
-}
-
-Row transfer_keys(const Experiment& experiment, const NamedTransfer& transfer) {
-  return {{"transfer", transfer.name}, {"emission", emission_name(experiment.emission)}};
-}
-
 }  // namespace raytruth

@@ -62,16 +62,4 @@ RayCounts ray_counts(const Experiment& experiment, std::size_t studied);
 /// `rays`, `rays_constant`.
 Columns<RayCounts> ray_count_columns();
 
-/// Keys of the rows of studies of colour and opacity: `transfer`, `emission`.
-std::vector<Column> transfer_columns();
-Row transfer_keys(const Experiment& experiment, const NamedTransfer& transfer);
-
-/// More keys: `sampling`, `step`.
-std::vector<Column> sampling_columns();
-void add_sampling(Row& row, const Sampling& sampling);
-
-/// How many rays there were: `rays`, `rays_constant`.
-std::vector<Column> count_columns();
-void add_counts(Row& row, const Experiment& experiment, std::size_t studied);
-
 }  // namespace raytruth

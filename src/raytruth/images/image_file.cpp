@@ -1,6 +1,7 @@
 #include "raytruth/images/image_file.hpp"
 
 #include "raytruth/core/error.hpp"
+#include "raytruth/core/npy.hpp"
 #include "raytruth/images/png_file.hpp"
 #include "raytruth/volume/files/byte_stream.hpp"
 #include "raytruth/volume/files/refuse.hpp"
@@ -52,19 +53,9 @@ std::string pfm_file(const Image& image) {
   return file;
 }
 
-/// Magic, version 1.0 and the header, padded with spaces so that the data begin at a multiple of 64 bytes (NEP 1).
-std::string npy_header(std::string_view type, const std::string& shape) {
-  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", type, shape);
-  constexpr std::size_t preamble = 10;
-  header.append(63 - (preamble + header.size()) % 64, ' ');
-  header += '\n';
-  std::string file("\x93NUMPY\x01\x00", 8);
-  append(file, static_cast<std::uint16_t>(header.size()));
-  return file + header;
-}
-
 std::string npy_file(const Image& image) {
-  std::string file = npy_header("<f4", fmt::format("({}, {}, 4)", image.size[1], image.size[0]));
+  std::string file =
+      npy_header("<f4", {static_cast<std::size_t>(image.size[1]), static_cast<std::size_t>(image.size[0]), 4});
   for (const Eigen::Array4d& pixel : image.pixels)
     for (const double number : pixel) append(file, static_cast<float>(number));
   return file;
@@ -236,7 +227,7 @@ std::string image_file(const Image& image, std::string_view extension, Transfer8
 }
 
 std::string number_file(const std::vector<double>& numbers, const std::array<std::int64_t, 2>& size) {
-  std::string file = npy_header("<f8", fmt::format("({}, {})", size[1], size[0]));
+  std::string file = npy_header("<f8", {static_cast<std::size_t>(size[1]), static_cast<std::size_t>(size[0])});
   for (const double number : numbers) append(file, number);
   return file;
 }

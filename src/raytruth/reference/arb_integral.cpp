@@ -13,11 +13,11 @@ namespace raytruth {
 namespace {
 
 using arb::Ball;
+using arb::BallPiece;
+using arb::BallStretch;
 using arb::Color;
 using arb::evaluate;
-using arb::Piece;
 using arb::Polynomial;
-using arb::Stretch;
 
 // Bits of the quadrature, of its polynomials and of its goal: some decimal digits more than binary64 holds.
 constexpr slong quadrature_precision = 96;
@@ -89,7 +89,7 @@ struct StretchLight {
   Ball depth;
 };
 
-StretchLight integrate(const Stretch& stretch, Emission emission, std::int64_t& evaluations) {
+StretchLight integrate(const BallStretch& stretch, Emission emission, std::int64_t& evaluations) {
   const Polynomial depth = stretch.length * stretch.extinction.antiderivative();
   const Ball total = depth(1.0);
   const Ball opacity = -expm1(-total);
@@ -124,17 +124,17 @@ double rounded(const Ball& value, double& radius) {
 }
 
 /// A bound on the signal, its last piece's end included: behind 1 by a rounding, a sum of magnitudes grows by less.
-Ball largest_signal(const std::vector<Piece>& pieces) {
+Ball largest_signal(const std::vector<BallPiece>& pieces) {
   Ball largest;
-  for (const Piece& piece : pieces)
+  for (const BallPiece& piece : pieces)
     for (const Ball& s : piece.control) largest = max(largest, s.magnitude());
   return largest * 1.0625;
 }
 
 template <class Cut>
-Certified certify(const std::vector<Piece>& pieces, const Cut& cut, Emission emission, double tolerance) {
+Certified certify(const std::vector<BallPiece>& pieces, const Cut& cut, Emission emission, double tolerance) {
   Ball length;
-  for (const Piece& piece : pieces) length += piece.length * piece.end;
+  for (const BallPiece& piece : pieces) length += piece.length * piece.end;
   const Ball brightest = cut.largest_color(largest_signal(pieces));
   const Ball largest = max(1.0, emission == Emission::associated ? brightest : brightest * length).upper();
 
@@ -142,8 +142,8 @@ Certified certify(const std::vector<Piece>& pieces, const Cut& cut, Emission emi
   Color color;
   Ball depth;
   Ball opacity;
-  for (const Piece& piece : pieces) {
-    cut(piece, [&](const Stretch& stretch) {
+  for (const BallPiece& piece : pieces) {
+    cut(piece, [&](const BallStretch& stretch) {
       const Ball front = exp(-depth);
       const StretchLight light = integrate(stretch, emission, result.evaluations);
       for (std::size_t i = 0; i < 3; ++i) color[i] += front * light.color[i];

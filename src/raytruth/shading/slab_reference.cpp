@@ -17,13 +17,13 @@ namespace raytruth {
 namespace {
 
 using arb::Ball;
+using arb::BallPiece;
+using arb::BallStretch;
 using arb::Box;
 using arb::Color;
 using arb::evaluate;
-using arb::Piece;
 using arb::PointsCut;
 using arb::Polynomial;
-using arb::Stretch;
 
 // As in arb_integral.cpp: some decimal digits more than binary64 holds.
 constexpr slong quadrature_precision = 96;
@@ -347,18 +347,18 @@ class SlabSum {
     is_cut_short_ = is_cut_short_ || hidden() < Ball(0x1p-80);
     if (is_cut_short_) return;
     const PartShades shades = shades_of(begin, end, is_analytic);
-    Piece piece{
+    BallPiece piece{
         .signal = signal_.size() <= 1 ? signal_ : signal_.restricted(begin, end), .control = {}, .length = end - begin};
     piece.control = bernstein_coefficients(piece.signal);
     Ball reached = begin;
-    cut_(piece, [&](const Stretch& stretch) {
+    cut_(piece, [&](const BallStretch& stretch) {
       add_stretch(stretch, reached, shades);
       reached += stretch.length;
     });
   }
 
   /// `stretch` has its length in units of the slab's, and begins at x = `begin`.
-  void add_stretch(const Stretch& stretch, const Ball& begin, const PartShades& shades) {
+  void add_stretch(const BallStretch& stretch, const Ball& begin, const PartShades& shades) {
     const Ball length = stretch.length * Ball(length_);
     const Polynomial depth = length * stretch.extinction.antiderivative();
     const Ball total = depth(1.0);

@@ -33,7 +33,7 @@ IntervalSlabs::IntervalSlabs(const PiecewiseLinear& transfer, const TableAxes& a
     const double high = axes.scalar(k + 1);
     double begin = low;
     const auto add = [&](double end) {
-      stretches_.push_back({k, (end - begin) / (high - low), {transfer.at(begin), before(transfer, end)}});
+      parts_.push_back({k, (end - begin) / (high - low), {transfer.at(begin), before(transfer, end)}});
       begin = end;
     };
     for (; knot != knots.end() && *knot < high; ++knot)
@@ -44,13 +44,13 @@ IntervalSlabs::IntervalSlabs(const PiecewiseLinear& transfer, const TableAxes& a
 
 std::vector<Vec4> IntervalSlabs::operator()(double length, bool backwards) const {
   std::vector<Vec4> slabs(intervals_, Vec4::Constant(0));
-  const std::size_t count = stretches_.size();
-  const auto stretch = [&](std::size_t i) -> const Stretch& { return stretches_[backwards ? count - 1 - i : i]; };
+  const std::size_t count = parts_.size();
+  const auto part = [&](std::size_t i) -> const LinearPart& { return parts_[backwards ? count - 1 - i : i]; };
   for (std::size_t first = 0; first < count; first += lane_count) {
     const std::size_t used = std::min(lane_count, count - first);
     LinearPiece<3, Eight> pieces;
     for (std::size_t lane = 0; lane < lane_count; ++lane) {
-      const auto& [interval, share, ends] = stretch(first + std::min(lane, used - 1));
+      const auto& [interval, share, ends] = part(first + std::min(lane, used - 1));
       for (std::size_t j = 0; j <= 3; ++j) pieces.x[j][lane] = static_cast<double>(j) / 3;
       pieces.extinction_at_0[lane] = ends[backwards ? 1 : 0].extinction;
       pieces.extinction_at_1[lane] = ends[backwards ? 0 : 1].extinction;
@@ -58,7 +58,7 @@ std::vector<Vec4> IntervalSlabs::operator()(double length, bool backwards) const
     }
     const PieceIntegral<Eight> integrals = integrate(pieces, emission_);
     for (std::size_t lane = 0; lane < used; ++lane) {
-      const auto& [interval, share, ends] = stretch(first + lane);
+      const auto& [interval, share, ends] = part(first + lane);
       Vec4 slab;
       slab.head<3>() = integrals.weight_0[lane] * ends[backwards ? 1 : 0].color +
                        integrals.weight_1[lane] * ends[backwards ? 0 : 1].color;

@@ -13,7 +13,7 @@ namespace raytruth {
 
 /// A transfer function that is linear between points, cut at a table's scalars: what a slab does between two
 /// neighbouring entries, exactly, for any length. The certified quadrature of reference/piece_integral.hpp does it,
-/// eight stretches side by side, so the error is about 1e-15.
+/// eight parts side by side, so the error is about 1e-15.
 class IntervalSlabs {
  public:
   using vec4 = Rules<double>::vec4;
@@ -26,13 +26,13 @@ class IntervalSlabs {
 
  private:
   /// Part of an interval on which optics are linear, from its lower end to its upper one.
-  struct Stretch {
+  struct LinearPart {
     std::size_t interval = 0;
     double share = 0;  ///< of the interval's width
     std::array<Optics, 2> ends;
   };
 
-  std::vector<Stretch> stretches_;
+  std::vector<LinearPart> parts_;
   std::size_t intervals_;
   Emission emission_;
 };

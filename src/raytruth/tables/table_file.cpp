@@ -1,6 +1,7 @@
 #include "raytruth/tables/table_file.hpp"
 
 #include "raytruth/core/error.hpp"
+#include "raytruth/core/npy.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -81,15 +82,7 @@ std::string with_numbers(std::string bytes, const std::vector<double>& values, c
 
 std::string npy_bytes(const std::vector<std::size_t>& shape, const std::vector<double>& values,
                       const TableFormat& format) {
-  constexpr std::size_t alignment = 64;
-  constexpr std::size_t before_header = 10;  // magic, version, length
-  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({},), }}", numpy_type(format),
-                                   fmt::join(shape, ", "));
-  const std::size_t length = (before_header + header.size() + 1 + alignment - 1) / alignment * alignment;
-  header.append(length - before_header - header.size() - 1, ' ');
-  std::string bytes("\x93NUMPY\x01\x00", 8);
-  append(bytes, static_cast<std::uint16_t>(header.size() + 1));
-  return with_numbers(bytes + header + "\n", values, format);
+  return with_numbers(npy_header(numpy_type(format), shape), values, format);
 }
 
 std::string nrrd_bytes(const std::vector<std::size_t>& shape, const std::vector<double>& values,

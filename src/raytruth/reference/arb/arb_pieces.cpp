@@ -47,7 +47,7 @@ std::vector<Ball> bernstein_form(const Polynomial& polynomial) {
 }
 
 /// Pieces of a formula on [begin, end], halved until the remainders are small; `unit` is the length of 1.
-void add_pieces(std::vector<Piece>& pieces, const Formula& formula, double begin, double end, const Ball& unit) {
+void add_pieces(std::vector<BallPiece>& pieces, const Formula& formula, double begin, double end, const Ball& unit) {
   // Far below what binary64 can tell of signals about 1.
   constexpr double largest_remainder = 0x1p-72;
   constexpr double narrowest = 0x1p-20;
@@ -109,8 +109,8 @@ std::array<Formula, 2> formulas_of(std::string_view name) {
 }  // namespace
 
 template <int Degree>
-std::vector<Piece> pieces_of(const Chain<Degree>& chain) {
-  std::vector<Piece> pieces;
+std::vector<BallPiece> pieces_of(const Chain<Degree>& chain) {
+  std::vector<BallPiece> pieces;
   for (std::size_t i = 0; i < chain.pieces.size(); ++i) {
     const auto& [start, length, polynomial] = chain.pieces[i];
     const Ball extent = Ball(chain.end_of(i)) - Ball(start);
@@ -122,10 +122,10 @@ std::vector<Piece> pieces_of(const Chain<Degree>& chain) {
   return pieces;
 }
 
-template std::vector<Piece> pieces_of(const Chain<3>&);
-template std::vector<Piece> pieces_of(const Chain<9>&);
+template std::vector<BallPiece> pieces_of(const Chain<3>&);
+template std::vector<BallPiece> pieces_of(const Chain<9>&);
 
-std::vector<Piece> pieces_of(const MarschnerLobbRay& signal) {
+std::vector<BallPiece> pieces_of(const MarschnerLobbRay& signal) {
   const Ray& ray = signal.ray;
   unit_direction(ray.direction);  // refuses what has none
   if (!(ray.length >= 0)) throw InputError(fmt::format("length {}; numbers >= 0 are allowed", ray.length));
@@ -161,14 +161,14 @@ std::vector<Piece> pieces_of(const MarschnerLobbRay& signal) {
     const Series ripple = cos(Ball(12.0) * pi * cos_of_root(pi * pi / 4.0 * (x * x + y * y)));
     return Ball(1.0) / 2.5 * (Ball(1.0) + alpha - sin(pi / 2.0 * position(2)) + alpha * ripple);
   };
-  std::vector<Piece> pieces;
+  std::vector<BallPiece> pieces;
   add_pieces(pieces, formula, 0, 1, length);
   return pieces;
 }
 
-std::vector<Piece> pieces_of(const AnalyticSignal& signal) {
+std::vector<BallPiece> pieces_of(const AnalyticSignal& signal) {
   const auto [before, behind] = formulas_of(signal.name);
-  std::vector<Piece> pieces;
+  std::vector<BallPiece> pieces;
   const double middle = signal.breaks[0];
   if (middle > 0) add_pieces(pieces, before, 0, middle, 1.0);
   add_pieces(pieces, middle > 0 ? behind : before, middle, signal.length, 1.0);

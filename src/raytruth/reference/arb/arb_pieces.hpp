@@ -10,7 +10,7 @@
 namespace raytruth::arb {
 
 /// A piece of a ray: a polynomial in x on [0, 1] that encloses the signal, t = start + length x.
-struct Piece {
+struct BallPiece {
   Polynomial signal;
   std::vector<Ball> control;  ///< its Bernstein coefficients
   Ball length;
@@ -19,8 +19,8 @@ struct Piece {
 
 /// The pieces of a signal in their order; see `arb_integral`.
 template <int Degree>
-std::vector<Piece> pieces_of(const Chain<Degree>& chain);
-std::vector<Piece> pieces_of(const MarschnerLobbRay& signal);
-std::vector<Piece> pieces_of(const AnalyticSignal& signal);
+std::vector<BallPiece> pieces_of(const Chain<Degree>& chain);
+std::vector<BallPiece> pieces_of(const MarschnerLobbRay& signal);
+std::vector<BallPiece> pieces_of(const AnalyticSignal& signal);
 
 }  // namespace raytruth::arb

@@ -95,7 +95,7 @@ std::optional<std::size_t> PointsCut::common_interval(const std::vector<Ball>& c
   return {};
 }
 
-void PointsCut::find_parts(const Piece& piece, const Ball& begin, const Ball& end, const std::vector<Ball>& control,
+void PointsCut::find_parts(const BallPiece& piece, const Ball& begin, const Ball& end, const std::vector<Ball>& control,
                            std::vector<Part>& parts) const {
   if (const auto interval = common_interval(control)) {
     parts.push_back({begin, end, interval});
@@ -139,7 +139,7 @@ void PointsCut::find_parts(const Piece& piece, const Ball& begin, const Ball& en
 }
 
 /// A monotone stretch from the value `first` to `last`.
-void PointsCut::cut_monotone(const Piece& piece, const Ball& begin, const Ball& end, const Ball& first,
+void PointsCut::cut_monotone(const BallPiece& piece, const Ball& begin, const Ball& end, const Ball& first,
                              const Ball& last, std::vector<Part>& parts) const {
   const Polynomial slope = piece.signal.derivative();
   const bool rises = first.middle() <= last.middle();
@@ -171,13 +171,14 @@ void PointsCut::cut_monotone(const Piece& piece, const Ball& begin, const Ball& 
   parts.push_back({reached, end, rises ? highest : lowest});
 }
 
-Stretch PointsCut::stretch_in(std::size_t interval, const Piece& piece, const Ball& begin, const Ball& end) const {
+BallStretch PointsCut::stretch_in(std::size_t interval, const BallPiece& piece, const Ball& begin,
+                                  const Ball& end) const {
   const auto& [a, b] = intervals_[interval];
-  Stretch stretch{.length = piece.length * (end - begin),
-                  .extinction = a.extinction,
-                  .weight = 0.0,
-                  .color = balls(a.color),
-                  .color_change = {}};
+  BallStretch stretch{.length = piece.length * (end - begin),
+                      .extinction = a.extinction,
+                      .weight = 0.0,
+                      .color = balls(a.color),
+                      .color_change = {}};
   const bool is_constant = a.extinction == b.extinction && (a.color == b.color).all();
   if (is_constant) return stretch;
   const Ball width = Ball(points_[interval]) - Ball(points_[interval - 1]);
@@ -189,7 +190,7 @@ Stretch PointsCut::stretch_in(std::size_t interval, const Piece& piece, const Ba
   return stretch;
 }
 
-Stretch PointsCut::stretch_across(const Piece& piece, const Ball& begin, const Ball& end) const {
+BallStretch PointsCut::stretch_across(const BallPiece& piece, const Ball& begin, const Ball& end) const {
   const Ball s = piece.signal(hull(begin, end));
   const Ball low = s.lower();
   const Ball high = s.upper();
@@ -219,7 +220,7 @@ Stretch PointsCut::stretch_across(const Piece& piece, const Ball& begin, const B
           .color_change = {}};
 }
 
-void PointsCut::operator()(const Piece& piece, const Visit& visit) const {
+void PointsCut::operator()(const BallPiece& piece, const Visit& visit) const {
   std::vector<Part> parts;
   find_parts(piece, 0.0, 1.0, piece.control, parts);
   // What a chain's rounding leaves behind the last coefficient.
@@ -245,7 +246,7 @@ Ball GaussianCut::largest_color(const Ball& largest_signal) const {
   return Ball(transfer_.color.abs().maxCoeff()) + largest_signal * Ball(transfer_.color_slope.abs().maxCoeff());
 }
 
-void GaussianCut::cut(const Piece& piece, const Ball& begin, const Ball& end, const Visit& visit) const {
+void GaussianCut::cut(const BallPiece& piece, const Ball& begin, const Ball& end, const Visit& visit) const {
   const Ball largest_remainder = Ball(0x1p-72) * Ball(transfer_.extinction);
   const Ball narrowest = 0x1p-30;
   const Ball width = Ball(transfer_.deviation) * Ball(transfer_.deviation) * 2.0;

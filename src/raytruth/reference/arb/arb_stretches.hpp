@@ -16,7 +16,7 @@ using Color = std::array<Ball, 3>;
 
 /// A stretch of a ray on which polynomials in x on [0, 1] enclose what the transfer function says of the signal: the
 /// extinction, and the colour as color + weight * color_change.
-struct Stretch {
+struct BallStretch {
   Ball length;
   Polynomial extinction;
   Polynomial weight;
@@ -24,7 +24,7 @@ struct Stretch {
   Color color_change;
 };
 
-using Visit = std::function<void(const Stretch&)>;
+using Visit = std::function<void(const BallStretch&)>;
 
 /// A piecewise linear transfer function. A piece is cut where its signal meets the points: the crossings are isolated
 /// by halving until the signal is monotone, then by Newton's method on intervals. A crossing lies somewhere in a gap of
@@ -34,7 +34,7 @@ class PointsCut {
  public:
   explicit PointsCut(const PiecewiseLinear& transfer);
 
-  void operator()(const Piece& piece, const Visit& visit) const;
+  void operator()(const BallPiece& piece, const Visit& visit) const;
   [[nodiscard]] Ball largest_color(const Ball& largest_signal) const;
 
  private:
@@ -52,12 +52,13 @@ class PointsCut {
 
   [[nodiscard]] std::size_t points_below(const Ball& s) const;
   [[nodiscard]] std::optional<std::size_t> common_interval(const std::vector<Ball>& control) const;
-  void find_parts(const Piece& piece, const Ball& begin, const Ball& end, const std::vector<Ball>& control,
+  void find_parts(const BallPiece& piece, const Ball& begin, const Ball& end, const std::vector<Ball>& control,
                   std::vector<Part>& parts) const;
-  void cut_monotone(const Piece& piece, const Ball& begin, const Ball& end, const Ball& first, const Ball& last,
+  void cut_monotone(const BallPiece& piece, const Ball& begin, const Ball& end, const Ball& first, const Ball& last,
                     std::vector<Part>& parts) const;
-  [[nodiscard]] Stretch stretch_in(std::size_t interval, const Piece& piece, const Ball& begin, const Ball& end) const;
-  [[nodiscard]] Stretch stretch_across(const Piece& piece, const Ball& begin, const Ball& end) const;
+  [[nodiscard]] BallStretch stretch_in(std::size_t interval, const BallPiece& piece, const Ball& begin,
+                                       const Ball& end) const;
+  [[nodiscard]] BallStretch stretch_across(const BallPiece& piece, const Ball& begin, const Ball& end) const;
 
   std::vector<double> points_;       ///< ascending, each once
   std::vector<Interval> intervals_;  ///< interval i ends at point i
@@ -68,11 +69,11 @@ class GaussianCut {
  public:
   explicit GaussianCut(const GaussianTransfer& transfer);
 
-  void operator()(const Piece& piece, const Visit& visit) const { cut(piece, 0.0, piece.end, visit); }
+  void operator()(const BallPiece& piece, const Visit& visit) const { cut(piece, 0.0, piece.end, visit); }
   [[nodiscard]] Ball largest_color(const Ball& largest_signal) const;
 
  private:
-  void cut(const Piece& piece, const Ball& begin, const Ball& end, const Visit& visit) const;
+  void cut(const BallPiece& piece, const Ball& begin, const Ball& end, const Visit& visit) const;
 
   GaussianTransfer transfer_;
 };

@@ -107,7 +107,7 @@ std::vector<StoredAxis> axes(const Volume& volume, const nifti_1_header& header)
 }
 
 /// Where the voxels lie: after the header, or in the .img (or .img.gz) beside a .hdr.
-StoredVolume::Piece data_file(Volume& volume, const nifti_1_header& header) {
+StoredVolume::Share data_file(Volume& volume, const nifti_1_header& header) {
   const std::string_view magic(header.magic, strnlen(header.magic, sizeof(header.magic)));
   const bool one_file = volume.file.extension() != ".hdr";
   if (magic != (one_file ? name_one_file : name_two_files)) {
@@ -121,16 +121,16 @@ StoredVolume::Piece data_file(Volume& volume, const nifti_1_header& header) {
     refuse(volume.file, fmt::format("vox_offset is {}", begin),
            fmt::format("a whole number of at least {} bytes is allowed", least));
   }
-  StoredVolume::Piece piece{volume.file, 0, static_cast<std::uint64_t>(begin)};
+  StoredVolume::Share share{volume.file, 0, static_cast<std::uint64_t>(begin)};
   if (!one_file) {
     std::error_code none;
-    piece.file.replace_extension(".img");
-    if (!std::filesystem::exists(piece.file, none) && std::filesystem::exists(piece.file.string() + ".gz", none)) {
-      piece.file += ".gz";
+    share.file.replace_extension(".img");
+    if (!std::filesystem::exists(share.file, none) && std::filesystem::exists(share.file.string() + ".gz", none)) {
+      share.file += ".gz";
       volume.encoding = Encoding::gzip;
     }
   }
-  return piece;
+  return share;
 }
 
 }  // namespace
@@ -142,7 +142,7 @@ StoredVolume read_nifti_header(const std::filesystem::path& file) {
   volume.format = "NIfTI-1";
   volume.encoding = file.extension() == ".gz" ? Encoding::gzip : Encoding::raw;
   const auto header = read_header(volume);
-  stored.pieces = {data_file(volume, header)};
+  stored.shares = {data_file(volume, header)};
   volume.type = voxel_type(file, header.datatype);
   if (header.bitpix != 8 * facts(volume.type).bytes) {
     refuse(file, fmt::format("bitpix is {}", header.bitpix),

@@ -284,7 +284,7 @@ std::optional<std::vector<std::string>> numbered_files(const std::filesystem::pa
 }
 
 /// The files that hold the voxels, each with where the stream begins in it: after the header if attached.
-std::vector<StoredVolume::Piece> data_files(const std::filesystem::path& file, const Header& header) {
+std::vector<StoredVolume::Share> data_files(const std::filesystem::path& file, const Header& header) {
   const auto value = header.field(nrrdField_data_file);
   if (!header.fields.contains(nrrdField_data_file)) {
     if (!header.data_begin) {
@@ -302,22 +302,22 @@ std::vector<StoredVolume::Piece> data_files(const std::filesystem::path& file, c
   } else if (auto numbered = numbered_files(file, value)) {
     names = std::move(*numbered);
   }
-  std::vector<StoredVolume::Piece> pieces;
-  pieces.reserve(names.size());
-  for (const auto& name : names) pieces.push_back({file.parent_path() / name});
-  return pieces;
+  std::vector<StoredVolume::Share> shares;
+  shares.reserve(names.size());
+  for (const auto& name : names) shares.push_back({file.parent_path() / name});
+  return shares;
 }
 
-/// Moves the beginning of `piece` past `lines` line ends.
-void skip_lines(StoredVolume::Piece& piece, unsigned lines) {
-  ByteStream stream(piece.file, piece.offset);
+/// Moves the beginning of `share` past `lines` line ends.
+void skip_lines(StoredVolume::Share& share, unsigned lines) {
+  ByteStream stream(share.file, share.offset);
   std::vector<unsigned char> chunk(std::size_t{1} << 16U);
   while (lines > 0) {
     const auto got = stream.read(chunk);
     if (got == 0)
-      refuse(piece.file, fmt::format("the data end {} lines too early", lines), "\"line skip\" passes over them");
+      refuse(share.file, fmt::format("the data end {} lines too early", lines), "\"line skip\" passes over them");
     for (std::size_t position = 0; position < got && lines > 0; ++position) {
-      ++piece.offset;
+      ++share.offset;
       if (chunk[position] == '\n') --lines;
     }
   }
@@ -351,24 +351,24 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
     }
   }
 
-  stored.pieces = data_files(file, header);
-  if (voxel_count(volume) % stored.pieces.size() != 0) {
-    refuse(file, fmt::format("{} data files hold {} voxels", stored.pieces.size(), voxel_count(volume)),
+  stored.shares = data_files(file, header);
+  if (voxel_count(volume) % stored.shares.size() != 0) {
+    refuse(file, fmt::format("{} data files hold {} voxels", stored.shares.size(), voxel_count(volume)),
            "an equal share each is allowed");
   }
-  const auto piece_bytes = voxel_count(volume) / stored.pieces.size() * static_cast<unsigned>(facts(volume.type).bytes);
-  for (auto& piece : stored.pieces) {
-    skip_lines(piece, state->lineSkip);
+  const auto piece_bytes = voxel_count(volume) / stored.shares.size() * static_cast<unsigned>(facts(volume.type).bytes);
+  for (auto& share : stored.shares) {
+    skip_lines(share, state->lineSkip);
     if (state->byteSkip >= 0) {
-      piece.skip = static_cast<std::uint64_t>(state->byteSkip);
+      share.skip = static_cast<std::uint64_t>(state->byteSkip);
     } else if (state->byteSkip == -1 && volume.encoding == Encoding::raw) {
       // With -1 the data are the last bytes of the file.
-      const auto bytes = ByteStream(piece.file, piece.offset).most_bytes();
+      const auto bytes = ByteStream(share.file, share.offset).most_bytes();
       if (bytes < piece_bytes) {
-        refuse(piece.file, fmt::format("the file has {} bytes of data", bytes),
+        refuse(share.file, fmt::format("the file has {} bytes of data", bytes),
                fmt::format("the header announces {}", piece_bytes));
       }
-      piece.skip = bytes - piece_bytes;
+      share.skip = bytes - piece_bytes;
     } else {
       refuse(file, fmt::format("\"byte skip\" is {}", state->byteSkip), "0 and more, and -1 for raw data, are allowed");
     }

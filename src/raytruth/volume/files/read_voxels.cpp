@@ -61,14 +61,14 @@ T from_bytes(const unsigned char* bytes, std::endian endian) {
 }
 
 template <class T>
-void add_binary(ByteStream& stream, std::uint64_t count, const StoredVolume::Piece& piece, Volume& volume) {
+void add_binary(ByteStream& stream, std::uint64_t count, const StoredVolume::Share& share, Volume& volume) {
   Values values(volume);
   std::vector<unsigned char> chunk(chunk_voxels * sizeof(T));
   for (std::uint64_t done = 0; done < count;) {
     const auto wanted = std::min<std::uint64_t>(count - done, chunk_voxels);
     const auto got = stream.read(std::span(chunk).first(wanted * sizeof(T)));
     if (got < wanted * sizeof(T)) {
-      refuse(piece.file, fmt::format("the data end after {} bytes", done * sizeof(T) + got),
+      refuse(share.file, fmt::format("the data end after {} bytes", done * sizeof(T) + got),
              fmt::format("the header announces {}", count * sizeof(T)));
     }
     for (std::size_t voxel = 0; voxel < wanted; ++voxel) {
@@ -78,7 +78,7 @@ void add_binary(ByteStream& stream, std::uint64_t count, const StoredVolume::Pie
     done += wanted;
   }
   if (stream.read(std::span(chunk).first(1)) != 0) {
-    refuse(piece.file, fmt::format("the data go on after {} bytes", count * sizeof(T)),
+    refuse(share.file, fmt::format("the data go on after {} bytes", count * sizeof(T)),
            "as many bytes as the header announces are allowed");
   }
 }
@@ -118,75 +118,75 @@ class Words {
 };
 
 template <class T>
-void add_ascii(ByteStream& stream, std::uint64_t count, const StoredVolume::Piece& piece, Volume& volume) {
+void add_ascii(ByteStream& stream, std::uint64_t count, const StoredVolume::Share& share, Volume& volume) {
   Values values(volume);
   Words words(stream);
   for (std::uint64_t done = 0; done < count; ++done) {
     const auto word = words.next();
     if (word.empty()) {
-      refuse(piece.file, fmt::format("the data end after {} numbers", done),
+      refuse(share.file, fmt::format("the data end after {} numbers", done),
              fmt::format("the header announces {}", count));
     }
     const auto digits = word.front() == '+' ? word.substr(1) : word;
     T number{};
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
     if (error != std::errc() || end != digits.data() + digits.size() || word.size() == Words::longest) {
-      refuse(piece.file, fmt::format("{} is \"{}\"", values.place(), printable(word)),
+      refuse(share.file, fmt::format("{} is \"{}\"", values.place(), printable(word)),
              fmt::format("a number of type {} is allowed", facts(volume.type).name));
     }
     values.add(static_cast<double>(number));
   }
   if (!words.next().empty()) {
-    refuse(piece.file, fmt::format("the data go on after {} numbers", count),
+    refuse(share.file, fmt::format("the data go on after {} numbers", count),
            "as many numbers as the header announces are allowed");
   }
 }
 
 template <class T>
-void add_piece(const StoredVolume::Piece& piece, std::uint64_t count, Volume& volume) {
-  ByteStream stream(piece.file, piece.offset, volume.encoding == Encoding::gzip);
-  stream.skip(piece.skip);
+void add_share(const StoredVolume::Share& share, std::uint64_t count, Volume& volume) {
+  ByteStream stream(share.file, share.offset, volume.encoding == Encoding::gzip);
+  stream.skip(share.skip);
   if (volume.encoding == Encoding::ascii) {
-    add_ascii<T>(stream, count, piece, volume);
+    add_ascii<T>(stream, count, share, volume);
   } else {
-    add_binary<T>(stream, count, piece, volume);
+    add_binary<T>(stream, count, share, volume);
   }
 }
 
 auto adder(VoxelType type) {
   switch (type) {
     case VoxelType::int8:
-      return add_piece<std::int8_t>;
+      return add_share<std::int8_t>;
     case VoxelType::uint8:
-      return add_piece<std::uint8_t>;
+      return add_share<std::uint8_t>;
     case VoxelType::int16:
-      return add_piece<std::int16_t>;
+      return add_share<std::int16_t>;
     case VoxelType::uint16:
-      return add_piece<std::uint16_t>;
+      return add_share<std::uint16_t>;
     case VoxelType::int32:
-      return add_piece<std::int32_t>;
+      return add_share<std::int32_t>;
     case VoxelType::uint32:
-      return add_piece<std::uint32_t>;
+      return add_share<std::uint32_t>;
     case VoxelType::int64:
-      return add_piece<std::int64_t>;
+      return add_share<std::int64_t>;
     case VoxelType::uint64:
-      return add_piece<std::uint64_t>;
+      return add_share<std::uint64_t>;
     case VoxelType::float32:
-      return add_piece<float>;
+      return add_share<float>;
     default:
-      return add_piece<double>;
+      return add_share<double>;
   }
 }
 
 /// Refuses a file that is too small for its share of the voxels, whatever it holds.
-void check_capacity(const StoredVolume::Piece& piece, std::uint64_t count, const Volume& volume) {
+void check_capacity(const StoredVolume::Share& share, std::uint64_t count, const Volume& volume) {
   const bool ascii = volume.encoding == Encoding::ascii;
-  const auto most = ByteStream(piece.file, piece.offset, volume.encoding == Encoding::gzip).most_bytes();
+  const auto most = ByteStream(share.file, share.offset, volume.encoding == Encoding::gzip).most_bytes();
   // In ASCII every voxel takes a digit, and something stands between two of them.
   const auto least = ascii ? 2 * count - 1 : count * static_cast<std::uint64_t>(facts(volume.type).bytes);
-  if (piece.skip > most || least > most - piece.skip) {
-    refuse(piece.file,
-           fmt::format("the file can hold no more than {} bytes of data", most - std::min(most, piece.skip)),
+  if (share.skip > most || least > most - share.skip) {
+    refuse(share.file,
+           fmt::format("the file can hold no more than {} bytes of data", most - std::min(most, share.skip)),
            fmt::format("the header announces {} voxels, {} bytes", count, least));
   }
 }
@@ -236,8 +236,8 @@ std::uint64_t voxel_count(const Volume& volume) {
 
 Volume read_voxels(StoredVolume stored) {
   auto& volume = stored.volume;
-  const auto count = voxel_count(volume) / stored.pieces.size();
-  for (const auto& piece : stored.pieces) check_capacity(piece, count, volume);
+  const auto count = voxel_count(volume) / stored.shares.size();
+  for (const auto& share : stored.shares) check_capacity(share, count, volume);
   try {
     volume.grid.values.reserve(voxel_count(volume));
   } catch (const std::bad_alloc&) {
@@ -245,7 +245,7 @@ Volume read_voxels(StoredVolume stored) {
            fmt::format("its {} voxels need {} MiB of memory", voxel_count(volume), voxel_count(volume) >> 17U),
            "what this machine has is allowed");
   }
-  for (const auto& piece : stored.pieces) adder(volume.type)(piece, count, volume);
+  for (const auto& share : stored.shares) adder(volume.type)(share, count, volume);
   return std::move(volume);
 }
 

@@ -14,14 +14,14 @@ namespace raytruth {
 struct StoredVolume {
   /// One file with an equal share of the voxels: they begin `offset` bytes into the file, and `skip` bytes further in
   /// the (inflated) stream.
-  struct Piece {
+  struct Share {
     std::filesystem::path file;
     std::uint64_t offset = 0;
     std::uint64_t skip = 0;
   };
 
   Volume volume;
-  std::vector<Piece> pieces;
+  std::vector<Share> shares;
 };
 
 /// A file format: a row of `volume_formats()`.
