@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -87,9 +88,16 @@ struct IntegralScheme {
 
 /// `sampled`, `ideal`, `no_attenuation`, `iterations` or `exact` (the last two of `Method`): the family in tables and
 /// plots.
-std::string_view family(const IntegralScheme& scheme);
+inline std::string_view family(const IntegralScheme& scheme) {
+  constexpr std::array<std::string_view, std::variant_size_v<Method>> names{"sampled",    "ideal", "no_attenuation",
+                                                                            "iterations", "exact", "exact"};
+  return names[scheme.method.index()];
+}
 
 /// Whether the approximate signal is integrated exactly, so that its error is that of the signal alone.
-bool is_exact(const IntegralScheme& scheme);
+inline bool is_exact(const IntegralScheme& scheme) {
+  return std::holds_alternative<Ideal>(scheme.method) || std::holds_alternative<CellCubic>(scheme.method) ||
+         std::holds_alternative<CellAdaptive>(scheme.method);
+}
 
 }  // namespace raytruth

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 namespace raytruth {
@@ -12,6 +13,15 @@ struct CostError {
 
 /// Whether each of the points lies on the Pareto front: no other point is at least as good in both, and better in one.
 /// Equal points are on it together.
-std::vector<bool> pareto_front(const std::vector<CostError>& points);
+inline std::vector<bool> pareto_front(const std::vector<CostError>& points) {
+  std::vector<bool> is_on_front;
+  is_on_front.reserve(points.size());
+  for (const CostError& point : points)
+    is_on_front.push_back(std::none_of(points.begin(), points.end(), [&point](const CostError& other) {
+      return other.cost <= point.cost && other.error <= point.error &&
+             (other.cost < point.cost || other.error < point.error);
+    }));
+  return is_on_front;
+}
 
 }  // namespace raytruth

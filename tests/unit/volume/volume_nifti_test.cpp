@@ -256,7 +256,7 @@ TEST_F(VolumeNifti, RefusesImpossibleNumbers) {
   refused(NiftiFields{.magic = std::string("n+2\0", 4)}, "the magic is \"n+2\"");
   refused(NiftiFields{.magic = std::string(4, '\0')}, "the magic is \"\"");
   refused(NiftiFields{.magic = std::string("ni1\0", 4)}, "the magic is \"ni1\"");
-  refused(NiftiFields{.magic = "\n%s\xff"}, "the magic is \"?%s");
+  refused(NiftiFields{.magic = "\n%s\xff"}, "the magic is \"\\n%s");
 }
 
 TEST_F(VolumeNifti, RefusesValuesThatAreNotFinite) {

@@ -213,7 +213,7 @@ TEST_F(VolumeNrrd, RefusesFilesThatAreNone) {
   expect_refused(folder() / "pipe.nrrd", "not a regular file");
   expect_refused(write("volume.raw", twelve_bytes), ".nrrd, .nhdr, .nii, .nii.gz and .hdr are allowed");
   expect_refused(write("volume", twelve_bytes), "name does not tell the format");
-  expect_refused(write("new\nline.nrrd", "x"), "header is \"x\"", "new?line.nrrd");
+  expect_refused(write("new\nline.nrrd", "x"), "header is \"x\"", "new\\nline.nrrd");
   if (::geteuid() != 0) {
     const auto closed = write("closed.nrrd", NrrdFields{}.attached(twelve_bytes));
     std::filesystem::permissions(closed, std::filesystem::perms::none);

@@ -1,16 +1,25 @@
 #pragma once
 
+#include "raytruth/core/error.hpp"
+#include "raytruth/core/one_line.hpp"
+
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace raytruth {
 
-/// `text` as part of a one-line message: what does not print (control characters, line ends) becomes '?', and what is
-/// beyond 120 characters is left out.
-[[nodiscard]] std::string printable(std::string_view text);
+/// `text` as part of a message: on one line, and at most 120 bytes of it.
+[[nodiscard]] inline std::string printable(std::string_view text) {
+  constexpr std::size_t longest = 120;
+  return shortened(one_line(text), longest);
+}
 
 /// Throws InputError "<file>: <found>; <allowed>", one line.
-[[noreturn]] void refuse(const std::filesystem::path& file, std::string_view found, std::string_view allowed);
+[[noreturn]] inline void refuse(const std::filesystem::path& file, std::string_view found, std::string_view allowed) {
+  throw InputError(one_line(fmt::format("{}: {}; {}", file.string(), found, allowed)));
+}
 
 }  // namespace raytruth
