@@ -114,8 +114,10 @@ void need_steps_of_virtual_samples(const Experiment& experiment) {
 
 struct Options {};
 
-Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
+Options read_options(const Experiment& experiment, const JsonReader& json) {
   json.only({"kind"});
+  need_sampled_schemes(experiment);
+  need_steps_of_virtual_samples(experiment);
   return {};
 }
 

@@ -24,7 +24,7 @@ struct Gooch {
 /// which `is_printed` leaves out. `light_front` and `light_back` are N_f.L and N_b.L, `cosine` is N_f.N_b.
 inline Vector3<double> gooch_color(const SlabOptics& optics, Emission emission, const NormalCurve& curve,
                                    double light_front, double light_back, double cosine, const Gooch& gooch,
-                                   bool is_printed) {
+                                   bool is_printed = false) {
   const auto sums = slab_integral<2>(optics, emission, {}, [&](double x, double /*slope*/) {
     const double lit = light_front * curve.weight(1 - x, cosine) + light_back * curve.weight(x, cosine);
     return std::array<double, 2>{1, lit};
