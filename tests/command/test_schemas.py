@@ -12,12 +12,14 @@ import test_run
 from support import EXPERIMENT, RAY, SLAB, SOURCE, STUDY, VOLUME_RAY, ProgramTest, changed
 
 SCHEMAS = {name: json.loads((SOURCE / f"experiments/schemas/{name}.json").read_text()) for name in ("experiment", "case", "result", "scene", "table", "vectors")}
-PARTS = [json.loads(path.read_text()) for path in sorted((SOURCE / "experiments/schemas").rglob("*.json"))]
-STORE = {schema["$id"]: schema for schema in PARTS}
+# The schemas name each other, and themselves, relative to where they stand.
+BASE = "https://raytruth.invalid/"
+STORE = {BASE + str(path.relative_to(SOURCE / "experiments/schemas")): json.loads(path.read_text())
+         for path in sorted((SOURCE / "experiments/schemas").rglob("*.json"))}
 
 
 def validator(name):
-    resolver = jsonschema.RefResolver.from_schema(SCHEMAS[name], store=STORE)
+    resolver = jsonschema.RefResolver(f"{BASE}{name}.json", SCHEMAS[name], store=STORE)
     return jsonschema.Draft202012Validator(SCHEMAS[name], resolver=resolver)
 
 
@@ -191,7 +193,7 @@ class Agreement(ProgramTest):
 
 class Validity(ProgramTest):
     def test_schemas_are_schemas(self):
-        for schema in PARTS:
+        for schema in STORE.values():
             jsonschema.Draft202012Validator.check_schema(schema)
 
     def test_committed_experiments(self):
@@ -217,7 +219,7 @@ class Validity(ProgramTest):
         self.assertEqual(again["rows"], result["rows"])
 
     def test_names_are_those_of_the_catalogue(self):
-        names = STORE["names.json"]["$defs"]
+        names = STORE[BASE + "names.json"]["$defs"]
         for kind, place in [("schemes", "scheme"), ("shadings", "shading"), ("measures", "measure_name")]:
             self.assertEqual(names[place]["enum"], [entry["name"] for entry in self.json_of("list", kind, "--json")])
         signal_schemes = [entry["name"] for entry in self.json_of("list", "schemes", "--json") if "signal_order" in entry]
