@@ -11,7 +11,7 @@ from pathlib import Path
 
 SOURCE, WORK = Path(sys.argv[1]), Path(sys.argv[2])
 TREE = WORK / "tree"
-BUILD = TREE / "build"
+BUILD = TREE / "build/release"
 touched = {}
 
 
@@ -231,7 +231,7 @@ def main():
         (TREE / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(SOURCE / name, TREE / name)
     os.environ.setdefault("CCACHE_SLOPPINESS", "pch_defines,time_macros")
-    run("cmake", "-S", TREE, "-B", BUILD, "-G", "Ninja", "-D", "CMAKE_BUILD_TYPE=Release", "-D", "CMAKE_COMPILE_WARNING_AS_ERROR=ON", "-D", "RAYTRUTH_TESTS=OFF", "-D", "RAYTRUTH_BENCHMARKS=OFF")
+    run("cmake", "-S", TREE, "--preset", "release", "-D", "RAYTRUTH_TESTS=OFF", "-D", "RAYTRUTH_BENCHMARKS=OFF")
     print(f"before: {len(build())} sources compiled", flush=True)
 
     path = TREE / "src/measures/signals/turning_points.cpp"
