@@ -24,7 +24,7 @@ def scene(field):
 
 
 def case(field):
-    signal = {"kind": "trilinear", "volume": field, "origin": [0, 5, 5], "direction": [1, 0, 0]}
+    signal = {"kind": "trilinear", "volume": field, "origin": [-1, 5, 5], "direction": [1, 0, 0]}
     return {"signal": signal, "transfer_function": POINTS, "sampling": {"kind": "cells"}, "schemes": ["reference"]}
 
 
