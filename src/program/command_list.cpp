@@ -77,8 +77,7 @@ Json schema_of_names() {
     return Json{{"oneOf", list}};
   };
   return {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-          {"$id", "names.json"},
-          {"title", "The names that the program knows, as `raytruth list --schema` writes them"},
+              {"title", "The names that the program knows, as `raytruth list --schema` writes them"},
           {"$defs",
            {{"scheme", words_json(names_of(catalogue::integral_schemes()))},
             {"signal_scheme", words_json(catalogue::scheme_names())},

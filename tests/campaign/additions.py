@@ -11,7 +11,7 @@ from pathlib import Path
 
 SOURCE, WORK = Path(sys.argv[1]), Path(sys.argv[2])
 TREE = WORK / "tree"
-BUILD = TREE / "build"
+BUILD = TREE / "build/release"
 touched = {}
 
 
@@ -121,7 +121,7 @@ const Measure toy_count_measure{MeasureDefinition<Options, Record>{.name = "toy_
 }  // namespace raytruth
 """)
     new(what, "experiments/schemas/measures/toy_count.json", json.dumps({
-        "$schema": "https://json-schema.org/draft/2020-12/schema", "$id": "toy_count.json", "title": "Options of the measure toy_count", "type": "object",
+        "$schema": "https://json-schema.org/draft/2020-12/schema", "title": "Options of the measure toy_count", "type": "object",
         "properties": {"kind": {"const": "toy_count"}, "count": {"type": "integer", "minimum": 1, "maximum": 100}}, "required": ["kind", "count"], "additionalProperties": False}, indent=2) + "\n")
     change(what, "src/measures/measures.cpp", "extern const Measure turning_points_measure;\n", "extern const Measure toy_count_measure;\nextern const Measure turning_points_measure;\n")
     change(what, "src/measures/measures.cpp", "&turning_points_measure,", "&turning_points_measure, &toy_count_measure,")
@@ -183,7 +183,7 @@ inline Grid make_grid(const ToySlope& slope) {
 }  // namespace raytruth
 """)
     new(what, "experiments/schemas/fields/toy_slope.json", json.dumps({
-        "$schema": "https://json-schema.org/draft/2020-12/schema", "$id": "toy_slope.json", "title": "Options of the field toy_slope",
+        "$schema": "https://json-schema.org/draft/2020-12/schema", "title": "Options of the field toy_slope",
         "properties": {"kind": {"const": "toy_slope"}, "size": {"type": "integer", "minimum": 2, "maximum": 2048, "default": 8}}}, indent=2) + "\n")
     change(what, "src/raytruth/signals/fields/generated_fields.hpp", '#include "raytruth/signals/fields/molecule.hpp"\n', '#include "raytruth/signals/fields/molecule.hpp"\n#include "raytruth/signals/fields/toy_slope.hpp"\n')
     change(what, "src/raytruth/signals/fields/generated_fields.hpp", "Molecule, CtPhantom>", "Molecule, CtPhantom, ToySlope>")
@@ -231,7 +231,7 @@ def main():
         (TREE / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(SOURCE / name, TREE / name)
     os.environ.setdefault("CCACHE_SLOPPINESS", "pch_defines,time_macros")
-    run("cmake", "-S", TREE, "-B", BUILD, "-G", "Ninja", "-D", "CMAKE_BUILD_TYPE=Release", "-D", "CMAKE_COMPILE_WARNING_AS_ERROR=ON", "-D", "RAYTRUTH_TESTS=OFF", "-D", "RAYTRUTH_BENCHMARKS=OFF")
+    run("cmake", "-S", TREE, "--preset", "release", "-D", "RAYTRUTH_TESTS=OFF", "-D", "RAYTRUTH_BENCHMARKS=OFF")
     print(f"before: {len(build())} sources compiled", flush=True)
 
     path = TREE / "src/measures/signals/turning_points.cpp"
@@ -280,11 +280,10 @@ def main():
         print("without jsonschema the schemas are not checked")
     else:
         folder = TREE / "experiments/schemas"
-        base = "https://raytruth.invalid/"  # the schemas name each other relative to where they stand
-        store = {base + str(path.relative_to(folder)): json.loads(path.read_text()) for path in folder.rglob("*.json")}
-        schema = store[base + "experiment.json"]
-        resolver = jsonschema.RefResolver(base + "experiment.json", schema, store=store)
-        validator = jsonschema.Draft202012Validator(schema, resolver=resolver)
+        store = {path.as_uri(): json.loads(path.read_text()) for path in folder.rglob("*.json")}
+        path = folder / "experiment.json"
+        schema = store[path.as_uri()]
+        validator = jsonschema.Draft202012Validator(schema, resolver=jsonschema.RefResolver(base_uri=path.as_uri(), referrer=schema, store=store))
         errors = [error.message[:300] for error in validator.iter_errors(experiment)]
         expect(errors == [], f"the schemas take the toys: {errors}")
 

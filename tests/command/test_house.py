@@ -99,7 +99,7 @@ class Folders(unittest.TestCase):
 
 class Names(ProgramTest):
     def test_the_schema_of_names_is_that_of_the_program(self):
-        self.assertEqual((SOURCE / "experiments/schemas/names.json").read_text(), self.run_program("list", "--schema").stdout)
+        self.assertEqual((SOURCE / "experiments/schemas/names.json").read_text(), self.output_of("list", "--schema"))
 
     def test_every_measure_has_a_schema_and_every_schema_a_measure(self):
         measures = {entry["name"] for entry in self.json_of("list", "measures", "--json")}

@@ -51,12 +51,12 @@ class Panels(ProgramTest):
 
     def test_a_panel_without_rows_says_why(self):
         absent = {"name": "absent", "kind": "volume", "volume": "no_such_volume"}
-        panels = [{**POINTS, "rows": {"measure": "signal_error", "field": "absent"}}, {**LINES, "rows": {"measure": "signal_error", "field": "white"}, "y": "value_jump_max"},
+        panels = [{**POINTS, "rows": {"measure": "signal_error", "field": "absent"}}, {**LINES, "rows": {"measure": "cell_cubic", "field": "white"}},
                   {"kind": "image", "rows": {"field": "absent"}, "line": "fetches_mean", "pixels": "field", "label": "picture"}, POINTS]
         image = self.drawn(changed(changed(PANELS, "/fields/2", absent), "/plot/panels", panels))
         self.assertEqual(image.count(">No data</text>"), 3)
         self.assertIn(">absent: no_such_volume: no such volume in</text>", image)
-        self.assertIn(">no row with measure signal error, field</text>", image)
+        self.assertIn(">no row with measure cell cubic, field white</text>", image)
         self.assertEqual(image.count(">points of xi</text>"), 2)
 
     def test_a_plot_that_fails_stops_no_other(self):

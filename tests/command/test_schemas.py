@@ -12,14 +12,14 @@ import test_run
 from support import EXPERIMENT, RAY, SLAB, SOURCE, STUDY, VOLUME_RAY, ProgramTest, changed
 
 SCHEMAS = {name: json.loads((SOURCE / f"experiments/schemas/{name}.json").read_text()) for name in ("experiment", "case", "result", "scene", "table", "vectors")}
-# The schemas name each other, and themselves, relative to where they stand.
-BASE = "https://raytruth.invalid/"
-STORE = {BASE + str(path.relative_to(SOURCE / "experiments/schemas")): json.loads(path.read_text())
-         for path in sorted((SOURCE / "experiments/schemas").rglob("*.json"))}
+# They refer to each other by file, so a validator needs nothing but the folder that they lie in.
+FOLDER = SOURCE / "experiments/schemas"
+STORE = {path.as_uri(): json.loads(path.read_text()) for path in sorted(FOLDER.rglob("*.json"))}
 
 
 def validator(name):
-    resolver = jsonschema.RefResolver(f"{BASE}{name}.json", SCHEMAS[name], store=STORE)
+    path = FOLDER / f"{name}.json"
+    resolver = jsonschema.RefResolver(base_uri=path.as_uri(), referrer=SCHEMAS[name], store=STORE)
     return jsonschema.Draft202012Validator(SCHEMAS[name], resolver=resolver)
 
 
@@ -115,7 +115,7 @@ class Agreement(ProgramTest):
         # Normals and directions that no change of a component leaves as long as they are.
         tilted = changed(changed(SLAB, "/slab/front_normal", [0, 0.6, 0.8]), "/slab/back_normal", [0.6, 0, 0.8])
         tilted = changed(changed(tilted, "/lighting/light", [0, 0.6, 0.8]), "/lighting/half", [0.6, 0, 0.8])
-        for case in (RAY, VOLUME_RAY, tilted, changed(RAY, "/transfer_function", opacity)):
+        for case in ({"raytruth": "case/1"} | RAY, VOLUME_RAY, {"raytruth": "case/1"} | tilted, changed(RAY, "/transfer_function", opacity)):
             self.assert_agreement("eval", schema, mutations(case), BEYOND_CASE_SCHEMA)
 
     def test_experiments(self):
@@ -129,7 +129,7 @@ class Agreement(ProgramTest):
 
     def test_scenes(self):
         schema = validator("scene")
-        scene = {**test_render.SCENE, "scheme": "order1", "step": 0.5, "table": {"size": 16, "builder": "exact", "format": "unorm8", "filter": "nearest"},
+        scene = {"raytruth": "scene/1", **test_render.SCENE, "scheme": "order1", "step": 0.5, "table": {"size": 16, "builder": "exact", "format": "unorm8", "filter": "nearest"},
                  "early_termination": 0.9, "empty_space": {"block": 4, "bounds": "printed"}, "reconstruction": "catmull_rom", "emission": "plain"}
         gooch = {"light": [0, 0, 1], "gooch": {"cool": [0, 0, 1], "warm_share": 0.5}}
         lit_table = {**test_render.SCENE, "scheme": "order1", "table": {"size": 8}, "shading": {**gooch, "method": "slerp"}}
@@ -219,7 +219,7 @@ class Validity(ProgramTest):
         self.assertEqual(again["rows"], result["rows"])
 
     def test_names_are_those_of_the_catalogue(self):
-        names = STORE[BASE + "names.json"]["$defs"]
+        names = STORE[(FOLDER / "names.json").as_uri()]["$defs"]
         for kind, place in [("schemes", "scheme"), ("shadings", "shading"), ("measures", "measure_name")]:
             self.assertEqual(names[place]["enum"], [entry["name"] for entry in self.json_of("list", kind, "--json")])
         signal_schemes = [entry["name"] for entry in self.json_of("list", "schemes", "--json") if "signal_order" in entry]

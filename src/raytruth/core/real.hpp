@@ -40,8 +40,10 @@ class Binary32 {
   float value_ = 0;
 };
 
-/// The binary64 number nearest to `value`.
-inline double to_double(double value) { return value; }
-inline double to_double(Binary32 value) { return static_cast<double>(value); }
+/// The binary64 number nearest to `value`, of any of the arithmetics.
+template <class Real>
+double to_double(const Real& value) {
+  return static_cast<double>(value);
+}
 
 }  // namespace raytruth

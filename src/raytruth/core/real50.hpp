@@ -9,7 +9,4 @@ namespace raytruth {
 /// 50 decimal digits: the arithmetic in which formulas are judged.
 using Real50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
-/// The binary64 number nearest to `value`.
-inline double to_double(const Real50& value) { return static_cast<double>(value); }
-
 }  // namespace raytruth

@@ -65,19 +65,9 @@ void read_marschner_lobb(const JsonReader& json, Case& ray) {
 
 void read_analytic(const JsonReader& json, Case& ray) {
   json.only({"kind", "name"});
-  std::vector<std::string_view> names;
-  for (const AnalyticSignal& signal : analytic_signals()) names.push_back(signal.name);
-  const std::string name = json.at("name").word(names);
-  const AnalyticSignal& formula = *std::find_if(analytic_signals().begin(), analytic_signals().end(),
-                                                [&name](const AnalyticSignal& signal) { return signal.name == name; });
+  const AnalyticSignal& formula = *find_named(analytic_signals(), json.at("name").word(names_of(analytic_signals())));
   ray.signal = expand(formula);
   ray.formula = formula;
-}
-
-std::vector<std::string_view> scheme_names() {
-  std::vector<std::string_view> names;
-  for (const IntegralScheme& scheme : catalogue::integral_schemes()) names.push_back(scheme.name);
-  return names;
 }
 
 /// The ray's signal, and how far it may be from the field where that is asked for.
@@ -213,13 +203,12 @@ class SchemeAnswers {
 }  // namespace
 
 Case CaseReader::read(const JsonReader& json, std::vector<std::string>& warnings) {
-  json.only({"signal", "transfer_function", "emission", "sampling", "schemes"});
+  json.only({"raytruth", "signal", "transfer_function", "emission", "sampling", "schemes"});
+  check_form(json, "case/1");
   const JsonReader signal = json.at("signal");
-  std::vector<std::string_view> kinds(catalogue::signals.size());
-  std::transform(catalogue::signals.begin(), catalogue::signals.end(), kinds.begin(),
-                 [](const Named& entry) { return entry.name; });
-  const std::string kind = signal.at("kind").word(kinds);
-  Case ray{json, read_sampling(json.at("sampling")), read_schemes(json.at("schemes"), scheme_names()), std::nullopt};
+  const std::string kind = signal.at("kind").word(names_of(catalogue::signals));
+  Case ray{json, read_sampling(json.at("sampling")),
+           read_schemes(json.at("schemes"), names_of(catalogue::integral_schemes())), std::nullopt};
   if (const auto transfer = json.find("transfer_function")) ray.transfer = read_transfer_function(*transfer, warnings);
   ray.emission = read_emission(json);
   // RayIntegral refuses numbers that it cannot calculate with.

@@ -49,4 +49,8 @@ Sampling read_sampling(const JsonReader& json) {
   return sampling;
 }
 
+void check_form(const JsonReader& json, std::string_view form) {
+  if (const auto stated = json.find("raytruth")) stated->word({form});
+}
+
 }  // namespace raytruth

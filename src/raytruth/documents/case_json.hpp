@@ -37,4 +37,8 @@ void add_status(nlohmann::ordered_json& answer, Status status);
 /// Reads {"kind": "cells"} or {"kind": "constant", "step": 0.25}. Throws InputError.
 Sampling read_sampling(const JsonReader& json);
 
+/// Checks a document's member "raytruth", which may say what the document is and of which version of its form, as
+/// "scene/1". Throws InputError where it says something else.
+void check_form(const JsonReader& json, std::string_view form);
+
 }  // namespace raytruth

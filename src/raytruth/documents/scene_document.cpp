@@ -221,8 +221,9 @@ std::string read_scheme(const JsonReader& json) {
 }  // namespace
 
 SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
-  json.only({"volume", "repair", "reconstruction", "transfer_function", "emission", "camera", "scheme", "step",
-             "shading", "table", "early_termination", "empty_space"});
+  check_form(json, "scene/1");
+  json.only({"raytruth", "volume", "repair", "reconstruction", "transfer_function", "emission", "camera", "scheme",
+             "step", "shading", "table", "early_termination", "empty_space"});
   const std::string scheme = read_scheme(json.at("scheme"));
   SceneFile result{.scene = {.transfer = PiecewiseLinear(std::vector<TransferPoint>(1)), .scheme = scheme}};
   Scene& scene = result.scene;

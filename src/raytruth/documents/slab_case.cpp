@@ -110,7 +110,8 @@ Json answer_of(const Shading& shading, const SlabCase& asked, const SlabOptics& 
 bool is_slab_case(const JsonReader& json) { return json.is_object() && json.find("slab").has_value(); }
 
 SlabCase read_slab_case(const JsonReader& json, std::vector<std::string>& warnings) {
-  json.only({"slab", "transfer_function", "emission", "lighting", "schemes"});
+  json.only({"raytruth", "slab", "transfer_function", "emission", "lighting", "schemes"});
+  check_form(json, "case/1");
   SlabCase result{.slab = read_slab(json.at("slab")),
                   .transfer = read_transfer_function(json.at("transfer_function"), warnings),
                   .emission = read_emission(json),

@@ -3,6 +3,7 @@
 #include "raytruth/catalogue.hpp"
 #include "raytruth/core/named.hpp"
 #include "raytruth/core/random.hpp"
+#include "raytruth/documents/case_json.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
 #include "raytruth/reference/ray_integral.hpp"
 #include "raytruth/tables/exact.hpp"
@@ -99,6 +100,7 @@ MadeTable psi_table(const TableCase& asked) {
 }  // namespace
 
 TableCase read_table_case(const JsonReader& json, std::vector<std::string>& warnings) {
+  check_form(json, "table/1");
   std::vector<std::string_view> names = names_of(catalogue::second_order_builders);
   names.push_back(catalogue::psi_builder.name);
   for (const std::string_view name : names_of(catalogue::table_builders())) names.push_back(name);
@@ -109,11 +111,12 @@ TableCase read_table_case(const JsonReader& json, std::vector<std::string>& warn
   const SecondOrderBuilder* const second_order = find_named(catalogue::second_order_builders, name);
   const bool is_psi = name == catalogue::psi_builder.name;
   if (is_psi)
-    json.only({"builder", "size", "format"});
+    json.only({"raytruth", "builder", "size", "format"});
   else if (second_order != nullptr && second_order->takes_iterations)
-    json.only({"transfer_function", "emission", "builder", "iterations", "size", "length", "range", "format"});
+    json.only(
+        {"raytruth", "transfer_function", "emission", "builder", "iterations", "size", "length", "range", "format"});
   else
-    json.only({"transfer_function", "emission", "builder", "size", "length", "range", "format"});
+    json.only({"raytruth", "transfer_function", "emission", "builder", "size", "length", "range", "format"});
   const auto largest = second_order != nullptr ? static_cast<std::int64_t>(largest_table3_size) : largest_size;
   asked.axes.size = static_cast<std::size_t>(json.at("size").integer(2, largest));
   if (second_order != nullptr)

@@ -132,7 +132,7 @@ TEST(DigitsCorrect, AreBoundedByZeroAndByTheRadius) {
   EXPECT_NEAR(digits_correct({truth.color, truth.opacity}, truth), -std::log10(1e-14 / 0.125), 1e-9);
   EXPECT_EQ(digits_correct({truth.color * 3, truth.opacity}, truth), 0);
   EXPECT_EQ(digits_correct({truth.color, 1e308}, truth), 0);
-  EXPECT_NEAR(digits_correct({truth.color, truth.opacity}, {.color = truth.color, .opacity = 0.125}),
+  EXPECT_NEAR(digits_correct({truth.color, truth.opacity}, {{.color = truth.color, .opacity = 0.125}}),
               53 * std::log10(2), 1e-9);
 }
 
