@@ -335,7 +335,8 @@ def draw_absence(axes, result, panel):
     axes.set_yticks([])
     axes.spines[:].set_visible(False)
     axes.set_xlabel(panel.get("label") or f"{panel['label_x']}: {panel['label_y']}")
-    return max(0.6, 0.11 * len(text.splitlines())), None
+    # As high as it would be with its rows, where that does not depend on them: the others keep their sizes.
+    return max(1.0 if "group" in panel else 2.4, 0.11 * len(text.splitlines())), None
 
 
 def refused_rows(result):
