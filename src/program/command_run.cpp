@@ -168,7 +168,8 @@ int run_experiments(const RunOptions& options) {
 
 std::function<int()> describe(CommandOptions& add) {
   const auto options = std::make_shared<RunOptions>();
-  add.operands("experiment", options->experiments, "JSON files; '-' is standard input");
+  add.operands("experiment", options->experiments,
+               "JSON files, or names that `raytruth list experiments` has; '-' is standard input");
   add.text("-o", "DIR", options->folder, "Write NAME.json into this folder (default: to standard output)");
   add.threads(options->threads);
   add.word("--profile", options->profile, {"quick", "full"}, "quick: a smaller version, in seconds (default: full)");
