@@ -150,7 +150,7 @@ BENCHMARK_TEMPLATE(exact_xi_against_sums, Order2)
 
 /// The measure behind the xi studies on two threads, against one.
 void two_threads_against_one(benchmark::State& state) {
-  const JsonReader nothing = JsonReader::from_text(R"({"kind": "signal_error"})", "benchmark");
+  const JsonReader options = JsonReader::from_text(R"({"kind": "signal_error"})", "benchmark");
   const std::string document =
       R"({"schemes": ["order0_left", "order0_right", "order0_mid", "order1", "order2"], "samplings": [{"kind": "cells"}]})";
   const Experiment experiment{.name = "benchmark",
@@ -165,7 +165,9 @@ void two_threads_against_one(benchmark::State& state) {
                               .checks = {},
                               .json = JsonReader::from_text(document, "benchmark")};
   const Field white{.name = "white", .grid = field(0), .data_range = {0, 1}};
-  const auto measure = [&] { return signal_error_rows(experiment, nothing, white).size(); };
+  const Measure& signal_error = measure_of(options);
+  const auto asked = signal_error.ask(signal_error, experiment, options);
+  const auto measure = [&] { return asked->rows(experiment, white, 0).size(); };
   tbb::task_arena one(1);
   tbb::task_arena two(2);
   benchmarks::run_paired(
