@@ -174,7 +174,8 @@ inline void check(const ToySlope& slope) { check_options(slope); }
 
 inline Grid make_grid(const ToySlope& slope) {
   check(slope);
-  Grid grid{.size = {slope.size, slope.size, slope.size}};
+  Grid grid;
+  grid.size = {slope.size, slope.size, slope.size};
   for (std::int64_t i = 0; i < slope.size * slope.size * slope.size; ++i)
     grid.values.push_back(static_cast<double>(i % slope.size) / static_cast<double>(slope.size - 1));
   return grid;
