@@ -583,6 +583,30 @@ void rays_against_boost(benchmark::State& state) {
 }
 BENCHMARK(rays_against_boost)->ArgName("crossings")->Arg(1)->Arg(3)->Arg(14)->Arg(139)->UseManualTime();
 
+/// What an opacity that is linear between points costs beside an extinction that is: the same cubics, from 0 to an
+/// opacity of `most`, against the extinctions of the two ends. A price is 1 over the speedup.
+void opacity_rays_against_linear(benchmark::State& state, double most) {
+  Chain<3> chain;
+  for (std::uint64_t i = 0; i < 64; ++i) {
+    const auto scalars = random_numbers(5, RandomStream::points, i);
+    chain.pieces.push_back({chain.end, 0.25, {{scalars[0], scalars[1], scalars[2], scalars[3]}}});
+    chain.end = chain.end + 0.25;
+  }
+  const Vector3<double> red{1, 0, 0};
+  const Vector3<double> blue{0, 0, 1};
+  constexpr double unit_length = 8;
+  const PiecewiseLinear opacity = from_opacity({{0, 0, red}, {1, most, blue}}, unit_length);
+  const PiecewiseLinear linear({{0, {0, red}}, {1, {opacity.at(most < 1 ? 1 : 0.99).extinction, blue}}});
+  RayIntegral of_opacity(opacity, Emission::associated);
+  RayIntegral of_linear(linear, Emission::associated);
+  benchmarks::run_paired(
+      state, [&] { return of_opacity(chain).opacity; }, [&] { return of_linear(chain).opacity; });
+  state.counters["radius"] = of_opacity(chain).radius;
+  state.counters["price"] = 1 / state.counters["speedup"];
+  state.counters["nanoseconds_per_cubic"] =
+      1e9 * state.counters["subject_seconds"] / static_cast<double>(chain.pieces.size());
+}
+
 /// Depths are no integers, which is all that BENCHMARK's arguments may be.
 [[maybe_unused]] const bool are_registered = [] {
   for (const double depth : {0.01, 0.3, 3.0, 30.0}) {
@@ -594,6 +618,10 @@ BENCHMARK(rays_against_boost)->ArgName("crossings")->Arg(1)->Arg(3)->Arg(14)->Ar
     benchmark::RegisterBenchmark(fmt::format("pieces_against_arb/depth:{}", depth).c_str(), pieces_against_arb, depth)
         ->UseManualTime();
   }
+  for (const double most : {0.5, 0.9, 0.99, 1.0})
+    benchmark::RegisterBenchmark(fmt::format("opacity_rays_against_linear/most:{}", most).c_str(),
+                                 opacity_rays_against_linear, most)
+        ->UseManualTime();
   return true;
 }();
 

@@ -104,8 +104,8 @@ class Answers(ProgramTest):
     def test_transfer_functions(self):
         opacity = {"points": [{"s": 0, "opacity": 1, "color": [1, 1, 1]}], "unit_length": 2}
         done = self.run_program("eval", "-", stdin=changed(RAY, "/transfer_function", opacity))
-        self.assertEqual(done.returncode, 0)
-        self.assertIn(b"clamped", done.stderr)
+        self.assertEqual((done.returncode, done.stderr), (0, b""))
+        self.assertEqual(json.loads(done.stdout)["reference"]["opacity"], 1)
         self.write("tf.json", RAY["transfer_function"])
         self.output_of("eval", "-", stdin=changed(RAY, "/transfer_function", "tf.json"))
 
@@ -115,6 +115,23 @@ class Truth(ProgramTest):
 
     def reference(self, case):
         return self.json_of("eval", "-", stdin=case)["reference"]
+
+    def test_opacity_is_linear_between_points(self):
+        # s = t; 1 - a = 1 - m t, whose mean logarithm is ((1 - m) ln(1 - m) + m) / -m; m = 1: a depth of 1.
+        line = {"kind": "piecewise_polynomial", "breaks": [0, 1], "coefficients": [[0, 1]]}
+        white = {"color": [1, 1, 1]}
+        for most in (0.01, 0.5, 0.99, 1):
+            points = [{"s": 0, "opacity": 0, **white}, {"s": 1, "opacity": most, **white}]
+            case = {
+                "signal": line,
+                "transfer_function": {"points": points, "unit_length": 1},
+                "emission": "associated",
+                "sampling": {"kind": "cells"},
+                "schemes": ["reference"],
+            }
+            rest = 1 - most
+            depth = ((rest * math.log(rest) if rest else 0) + most) / most
+            self.assert_encloses(self.reference(case), [1 - math.exp(-depth)] * 3, 1 - math.exp(-depth))
 
     def assert_encloses(self, reference, color, opacity, wide=1e-13):
         """Within the bound, and 1e-15 for the rounding of what is expected."""

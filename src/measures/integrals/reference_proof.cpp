@@ -24,15 +24,18 @@ struct Options {
   std::int64_t pieces = 0;
   std::int64_t rays = 0;
   std::int64_t blocks = 0;
+  bool is_linear_in_opacity = false;
 };
 
 Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
-  json.only({"kind", "pieces", "rays", "blocks"});
+  json.only({"kind", "pieces", "rays", "blocks", "linear_in"});
   constexpr std::int64_t most = 1'000'000'000;
   constexpr std::int64_t most_blocks = 10'000;
-  return {.pieces = json.at("pieces").integer(1, most),
+  const auto linear_in = json.find("linear_in");
+  return {.pieces = json.at("pieces").integer(0, most),
           .rays = json.at("rays").integer(1, most),
-          .blocks = json.at("blocks").integer(1, most_blocks)};
+          .blocks = json.at("blocks").integer(1, most_blocks),
+          .is_linear_in_opacity = linear_in && linear_in->word({"extinction", "opacity"}) == "opacity"};
 }
 
 /// What comes of one case.
@@ -56,7 +59,8 @@ Comparison compare(const IntegralCase& asked, Emission emission) {
 struct Record {
   std::int64_t block = 0;
   std::string_view signal;
-  Emission emission;
+  std::string_view transfer = {};
+  Emission emission = Emission::associated;
   std::int64_t cases = 0;
   std::int64_t violations = 0;
   double difference_max = 0;
@@ -66,8 +70,8 @@ struct Record {
   double arb_radius_max = 0;
 };
 
-Record summary_of(std::int64_t block, std::string_view signal, Emission emission, const std::vector<Comparison>& all) {
-  Record record{.block = block, .signal = signal, .emission = emission, .cases = static_cast<std::int64_t>(all.size())};
+Record summary_of(Record record, const std::vector<Comparison>& all) {
+  record.cases = static_cast<std::int64_t>(all.size());
   std::vector<double> radii;
   for (const Comparison& one : all) {
     radii.push_back(one.reference.radius);
@@ -82,20 +86,21 @@ Record summary_of(std::int64_t block, std::string_view signal, Emission emission
   return record;
 }
 
-/// One for each emission, of cases first ... last - 1.
-void add_records(std::vector<Record>& records, std::int64_t block, std::string_view signal, std::int64_t first,
-                 std::int64_t last, const std::function<IntegralCase(std::uint64_t)>& make) {
+/// One for each emission, of cases first ... last - 1; `which` says of what.
+void add_records(std::vector<Record>& records, Record which, std::int64_t first, std::int64_t last,
+                 const std::function<IntegralCase(std::uint64_t)>& make) {
   if (first == last) return;
   for (const Emission emission : {Emission::associated, Emission::plain}) {
     std::vector<Comparison> all(static_cast<std::size_t>(last - first));
     tbb::parallel_for(first, last, [&](std::int64_t index) {
       all[static_cast<std::size_t>(index - first)] = compare(make(static_cast<std::uint64_t>(index)), emission);
     });
-    records.push_back(summary_of(block, signal, emission, all));
+    which.emission = emission;
+    records.push_back(summary_of(which, all));
   }
 }
 
-Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*options*/) {
+Columns<Record> columns(const Experiment& /*experiment*/, const Options& options) {
   Columns<Record> columns{
       {.name = "block", .description = "which part of the cases", .is_key = true, .cell = &Record::block},
       {.name = "signal",
@@ -117,6 +122,14 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
        .cell = &Record::difference_max},
       {.name = "not_converged", .description = "answers of the reference that say so", .cell = &Record::not_converged},
   };
+  if (options.is_linear_in_opacity)
+    columns.insert(
+        columns.begin() + 2,
+        {.name = "shape",
+         .description = "the transfer function, linear in opacity: up to 0.99 as a ramp, random points, jumps "
+                        "or a table of 257; contacts: opacity 1 at single scalars; opaque: 1 on a stretch",
+         .is_key = true,
+         .cell = &Record::transfer});
   append_part(columns, &Record::radius, shown_quantile_columns("radius", "", "radius of the reference"));
   append(columns,
          {{.name = "radius_max", .description = "largest radius of the reference", .cell = &Record::radius_max},
@@ -129,17 +142,28 @@ std::int64_t blocks(const Options& options) { return options.blocks; }
 std::vector<Record> records_of_block(const Experiment& experiment, const Options& options, std::int64_t block) {
   std::vector<Record> records;
   const auto begin_of = [&](std::int64_t all, std::int64_t b) { return all * b / options.blocks; };
-  add_records(records, block, "smooth_piece", begin_of(options.pieces, block), begin_of(options.pieces, block + 1),
+  add_records(records, {.block = block, .signal = "smooth_piece"}, begin_of(options.pieces, block),
+              begin_of(options.pieces, block + 1),
               [&](std::uint64_t index) { return smooth_piece(experiment.seed, index); });
   constexpr auto shapes = static_cast<std::int64_t>(signal_shapes.size());
   for (std::int64_t shape = 0; shape < shapes; ++shape) {
+    const auto signal = static_cast<SignalShape>(shape);
+    Record which{.block = block, .signal = signal_shapes[static_cast<std::size_t>(shape)]};
     const std::int64_t rays = options.rays / shapes + (shape < options.rays % shapes ? 1 : 0);
-    add_records(records, block, signal_shapes[static_cast<std::size_t>(shape)], begin_of(rays, block),
-                begin_of(rays, block + 1), [&](std::uint64_t index) {
-                  return random_case(static_cast<SignalShape>(shape),
-                                     static_cast<TransferShape>(index % transfer_shapes.size()), experiment.seed,
-                                     index);
-                });
+    if (!options.is_linear_in_opacity) {
+      add_records(records, which, begin_of(rays, block), begin_of(rays, block + 1), [&](std::uint64_t index) {
+        return random_case(signal, static_cast<TransferShape>(index % transfer_shapes.size()), experiment.seed, index);
+      });
+      continue;
+    }
+    for (std::size_t transfer = 0; transfer < opacity_shapes.size(); ++transfer) {
+      which.transfer = opacity_shapes[transfer];
+      const std::int64_t of_transfer = rays / static_cast<std::int64_t>(opacity_shapes.size());
+      add_records(records, which, begin_of(of_transfer, block), begin_of(of_transfer, block + 1),
+                  [&](std::uint64_t index) {
+                    return random_opacity_case(signal, static_cast<OpacityShape>(transfer), experiment.seed, index);
+                  });
+    }
   }
   return records;
 }

@@ -26,7 +26,7 @@ PiecewiseLinear with_place_of_point(const JsonReader& json, Make&& make) {
   }
 }
 
-PiecewiseLinear read_opacity_points(const JsonReader& json, std::vector<std::string>& warnings) {
+PiecewiseLinear read_opacity_points(const JsonReader& json) {
   const double unit_length = json.at("unit_length").positive_number();
   return with_place_of_point(json, [&](const std::vector<JsonReader>& items) {
     std::vector<OpacityPoint> points;
@@ -34,11 +34,6 @@ PiecewiseLinear read_opacity_points(const JsonReader& json, std::vector<std::str
       item.only({"s", "opacity", "color"});
       points.push_back({item.at("s").number(), item.at("opacity").number(0, 1), read_color(item.at("color"))});
     }
-    const auto clamped = std::count_if(points.begin(), points.end(),
-                                       [](const OpacityPoint& point) { return point.opacity > largest_opacity; });
-    if (clamped > 0)
-      warnings.push_back(fmt::format("warning: {}: {} opacities above 1 - 2^-12 are clamped to it",
-                                     json.at("points").place(), clamped));
     return from_opacity(points, unit_length);
   });
 }
@@ -54,17 +49,16 @@ PiecewiseLinear read_extinction_points(const JsonReader& json) {
   });
 }
 
-PiecewiseLinear read_points(const JsonReader& json, std::vector<std::string>& warnings) {
+PiecewiseLinear read_points(const JsonReader& json) {
   json.only({"points", "unit_length"});
-  return json.find("unit_length") ? read_opacity_points(json, warnings) : read_extinction_points(json);
+  return json.find("unit_length") ? read_opacity_points(json) : read_extinction_points(json);
 }
 
 }  // namespace
 
-PiecewiseLinear read_transfer_function(const JsonReader& json, std::vector<std::string>& warnings) {
-  if (!json.is_string()) return read_points(json, warnings);
-  return json.blame_for(
-      [&] { return read_points(JsonReader::from_file(json.resolve(json.text()).string()), warnings); });
+PiecewiseLinear read_transfer_function(const JsonReader& json, std::vector<std::string>& /*warnings*/) {
+  if (!json.is_string()) return read_points(json);
+  return json.blame_for([&] { return read_points(JsonReader::from_file(json.resolve(json.text()).string())); });
 }
 
 }  // namespace raytruth

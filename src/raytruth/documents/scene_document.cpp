@@ -96,6 +96,7 @@ PiecewiseLinear read_transfer(const JsonReader& json, const SceneOptions& option
     json.refuse("points with an opacity of their own", "another program's file together with --opacity");
   PiecewiseLinear transfer = read_transfer_function(json, result.warnings);
   result.transfer_function = {{"points", transfer.points().size()}, {"color", "linear light"}};
+  if (transfer.is_linear_in_opacity()) result.transfer_function["opacity"] = "linear between points";
   return transfer;
 }
 
@@ -238,6 +239,7 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   scene.camera = read_camera(json.at("camera"), scene.grid);
   const JsonReader transfer = json.at("transfer_function");
   scene.transfer = read_transfer(transfer, options, result, scene.grid);
+  if (scene.shading && scene.transfer.is_linear_in_opacity()) result.transfer_function["lit"] = sampled_opacity;
   // RayIntegral refuses numbers that it cannot calculate with.
   transfer.blame_for([&] { return RayIntegral(scene.transfer, scene.emission); });
   return result;

@@ -117,6 +117,8 @@ SlabCase read_slab_case(const JsonReader& json, std::vector<std::string>& warnin
                   .emission = read_emission(json),
                   .lighting = read_lighting(json.at("lighting")),
                   .schemes = read_schemes(json.at("schemes"), names_of(catalogue::shadings()))};
+  if (result.transfer.is_linear_in_opacity())
+    warnings.push_back(fmt::format("warning: {}: {}", json.at("transfer_function").place(), sampled_opacity));
   // RayIntegral refuses numbers that no reference can enclose.
   json.at("transfer_function").blame_for([&] { return RayIntegral(result.transfer, result.emission); });
   return result;

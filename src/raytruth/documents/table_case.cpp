@@ -62,13 +62,15 @@ Json error_json(const LookUpError& error) {
 MadeTable linear_table(const TableCase& asked, const TableBuilder& builder) {
   Table<double> table = builder.make(*asked.transfer, asked.axes, asked.emission);
   const std::size_t n = asked.axes.size;
+  const bool is_slab = builder.content.is_slab();
+  Json error = error_json(
+      is_slab ? linear_look_up_error(table, *asked.transfer, asked.emission, asked.format)
+              : weighted_look_up_error(table, builder.content, *asked.transfer, asked.emission, asked.format));
+  if (!is_slab && asked.transfer->is_linear_in_opacity()) error["truth"] = sampled_opacity;
   return {.shape = {n, n, 4},
           .values = table.values,
           .axes = {"back scalar", "front scalar", "red, green, blue, opacity"},
-          .error = error_json(
-              builder.content.is_slab()
-                  ? linear_look_up_error(table, *asked.transfer, asked.emission, asked.format)
-                  : weighted_look_up_error(table, builder.content, *asked.transfer, asked.emission, asked.format))};
+          .error = std::move(error)};
 }
 
 MadeTable parabolic_table(const TableCase& asked, const SecondOrderMethod& method) {

@@ -66,7 +66,8 @@ std::vector<TwinValues<float>> run_march(GlDevice& device, const Sampled& method
                                          Emission emission, std::span<const SampledRay<Binary32>> rays,
                                          const std::string& prelude) {
   std::vector<float> points;
-  for (const auto& [s, optics] : transfer.points())
+  const PiecewiseLinear linear = linear_in_extinction(transfer);
+  for (const auto& [s, optics] : linear.points())
     for (const double number : {s, optics.color[0], optics.color[1], optics.color[2], optics.extinction})
       points.push_back(static_cast<float>(number));
 
@@ -98,7 +99,7 @@ std::vector<TwinValues<float>> run_march(GlDevice& device, const Sampled& method
                               {"virtual_samples", method.virtual_samples},
                               {"is_recursion", method.correction == OpacityCorrection::recursion ? 1 : 0},
                               {"is_plain", emission == Emission::plain ? 1 : 0},
-                              {"point_count", static_cast<int>(transfer.points().size())}}},
+                              {"point_count", static_cast<int>(linear.points().size())}}},
        .inputs = {points, headers, values, middles, widths},
        .invocations = rays.size(),
        .output_size = 4 * rays.size()});

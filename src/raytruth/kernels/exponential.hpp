@@ -3,6 +3,7 @@
 #include "raytruth/kernels/lanes.hpp"
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
@@ -88,6 +89,45 @@ class PowerOf2 {
   Vector power_;
   Vector excess_;
 };
+
+/// ln(1 + g) = 2 q + q^3 P(q^2) for q = g / (2 + g), |q| <= 0.1716: P by interpolation at Chebyshev's points; the error
+/// relative to the logarithm is below 2^-57 (a test computes it).
+inline constexpr std::array<double, 7> logarithm_coefficients{
+    0x1.5555555555558p-1, 0x1.99999999952b2p-2, 0x1.2492492df6947p-2, 0x1.c71c62debf86bp-3,
+    0x1.7462b69705382p-3, 0x1.39fe208c33457p-3, 0x1.2b5b5fb2eac92p-3};
+
+/// |minus_log(a, b) + ln(b)| <= minus_log_error |ln(b)| for 2^-1000 <= b <= 1.4 and a = 1 - b, as far as its two
+/// arguments are exact.
+///
+/// Proof, in units of 2^-53. b = 2^k m, m in [0.707, 1.415). For k = 0, g = -a is exact: 2 + g errs by 1, q by 2 of
+/// itself, 2 q + q^3 P by 2 + 0.1 + 1. For k < 0, |ln b| is at least 0.3466: ln m, at most 0.3466, errs by 3.1 of
+/// itself, m - 1 being exact; k ln2_low and the first sum by less than 0.5 units of 0.3466, and the last sum by 1 of
+/// itself: 5 in all.
+inline constexpr double minus_log_error = 6 * unit_roundoff;
+
+/// -ln(b) from b > 0 and from a = 1 - b, which has the digits where b is near 1.
+template <class Vector>
+Vector minus_log(const Vector& a, const Vector& b) {
+  constexpr double ln2_high = 0x1.62e42feep-1;  // 32 bits: its product with k is exact
+  constexpr double ln2_low = 0x1.a39ef35793c76p-33;
+  constexpr double square_root_of_half = 0x1.6a09e667f3bcdp-1;
+  constexpr std::int64_t below_1 = 0x3ff0000000000000 - 0x3fe6a09e667f3bcd;
+  constexpr std::int64_t two_to_52 = 0x4330000000000000;
+  const auto shifted = to_bits(b) + to_bits(Vector(std::bit_cast<double>(below_1)));
+  const Vector k = from_bits((shifted >> 52) | two_to_52) - (0x1p52 + 1023);
+  const Vector m = from_bits((shifted & 0x000fffffffffffff) + to_bits(Vector(square_root_of_half)));
+  const Vector g = select(magnitude(k) < Vector(0.5), Vector(0.0 - a), Vector(m - 1.0));
+  const Vector q = g / (2.0 + g);
+  const Vector z = q * q;
+  const Vector z2 = z * z;
+  const auto two_terms = [&](std::size_t i) {
+    return multiply_add(z, Vector(logarithm_coefficients[i + 1]), Vector(logarithm_coefficients[i]));
+  };
+  const Vector last = multiply_add(z2, Vector(logarithm_coefficients[6]), two_terms(4));
+  const Vector p = multiply_add(z2, multiply_add(z2, last, two_terms(2)), two_terms(0));
+  const Vector log_m = multiply_add(q * z, p, 2.0 * q);
+  return -multiply_add(k, Vector(ln2_high), multiply_add(k, Vector(ln2_low), log_m));
+}
 
 /// A number not below log2(x) and at most 0.09 above, for normal x > 0: the exponent, and the chord of the logarithm
 /// between two powers of two, which lies at most 0.0861 below it.

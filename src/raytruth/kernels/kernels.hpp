@@ -1,6 +1,7 @@
 #pragma once
 
 #include "raytruth/kernels/linear_piece.hpp"
+#include "raytruth/kernels/opacity_piece.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -47,6 +48,12 @@ struct Kernels {
 
   /// Eight pieces side by side; each may be too deep by itself.
   PieceIntegral<Eight> (*integrate_eight)(const LinearPiece<Degree, Eight>&, bool associated);
+
+  /// One piece on which the opacity is linear. `nodes` above most_points: to be halved.
+  PieceIntegral<> (*integrate_one_opacity)(const OpacityPiece<Degree>&, bool associated);
+
+  /// Eight of them side by side; each may be to be halved by itself.
+  PieceIntegral<Eight> (*integrate_eight_opacities)(const OpacityPiece<Degree, Eight>&, bool associated);
 
   /// Where a polynomial, monotone on [begin, end], takes the values `targets`, which lie between its values there. Good
   /// guesses, to a share of 10^-10 or, `precisely`, to the rounding of the abscissa; not certified: what depends on

@@ -23,6 +23,7 @@ struct alignas(8 * lane_count) LaneBits {
   friend LaneBits operator+(const LaneBits& a, const LaneBits& b) { return {a.vector + b.vector}; }
   friend LaneBits operator|(const LaneBits& a, std::int64_t b) { return {a.vector | b}; }
   friend LaneBits operator&(const LaneBits& a, std::int64_t b) { return {a.vector & b}; }
+  friend LaneBits operator&(const LaneBits& a, const LaneBits& b) { return {a.vector & b.vector}; }
   friend LaneBits operator<<(const LaneBits& a, int b) { return {a.vector << b}; }
   friend LaneBits operator>>(const LaneBits& a, int b) { return {a.vector >> b}; }
 };
@@ -102,6 +103,9 @@ inline LaneBits to_bits(const Lanes& x) { return std::bit_cast<LaneBits>(x); }
 inline std::int64_t to_bits(double x) { return std::bit_cast<std::int64_t>(x); }
 inline Lanes from_bits(const LaneBits& x) { return std::bit_cast<Lanes>(x); }
 inline double from_bits(std::int64_t x) { return std::bit_cast<double>(x); }
+
+inline LaneBits both(const LaneBits& a, const LaneBits& b) { return a & b; }
+inline bool both(bool a, bool b) { return a && b; }
 
 /// b where either is not a number.
 template <class Vector>

@@ -35,4 +35,22 @@ struct PieceIntegral {
   Vector nodes{};  ///< of the quadrature; above most_nodes: not integrated
 };
 
+inline void set_lane(PieceIntegral<Eight>& integrals, std::size_t lane, const PieceIntegral<>& integral) {
+  integrals.weight_0[lane] = integral.weight_0;
+  integrals.weight_1[lane] = integral.weight_1;
+  integrals.weight_error[lane] = integral.weight_error;
+  integrals.depth[lane] = integral.depth;
+  integrals.depth_error[lane] = integral.depth_error;
+  integrals.nodes[lane] = integral.nodes;
+}
+
+inline PieceIntegral<> lane_of(const PieceIntegral<Eight>& integrals, std::size_t lane) {
+  return {.weight_0 = integrals.weight_0[lane],
+          .weight_1 = integrals.weight_1[lane],
+          .weight_error = integrals.weight_error[lane],
+          .depth = integrals.depth[lane],
+          .depth_error = integrals.depth_error[lane],
+          .nodes = integrals.nodes[lane]};
+}
+
 }  // namespace raytruth

@@ -3,6 +3,7 @@
 #include "raytruth/kernels/cell_kernel.hpp"
 #include "raytruth/kernels/look_up_kernel.hpp"
 #include "raytruth/kernels/moment_kernel.hpp"
+#include "raytruth/kernels/opacity_kernel.hpp"
 #include "raytruth/kernels/parabola_kernel.hpp"
 #include "raytruth/kernels/piece_kernel.hpp"
 #include "raytruth/kernels/second_order_kernel.hpp"
@@ -24,12 +25,15 @@ LinearPiece<Degree, Lanes> in_lanes(const LinearPiece<Degree, Eight>& pieces) {
   return result;
 }
 
+PieceIntegral<Eight> in_memory(const PieceIntegral<Lanes>& integrals) {
+  return {Eight(integrals.weight_0), Eight(integrals.weight_1),    Eight(integrals.weight_error),
+          Eight(integrals.depth),    Eight(integrals.depth_error), Eight(integrals.nodes)};
+}
+
 template <int Degree>
 [[gnu::flatten]] PieceIntegral<Eight> integrate_eight(const LinearPiece<Degree, Eight>& pieces, bool associated) {
-  const PieceIntegral<Lanes> result = associated ? integrate_node_by_node<AssociatedSums>(in_lanes(pieces))
-                                                 : integrate_node_by_node<PlainSums>(in_lanes(pieces));
-  return {Eight(result.weight_0), Eight(result.weight_1),    Eight(result.weight_error),
-          Eight(result.depth),    Eight(result.depth_error), Eight(result.nodes)};
+  return in_memory(associated ? integrate_node_by_node<AssociatedSums>(in_lanes(pieces))
+                              : integrate_node_by_node<PlainSums>(in_lanes(pieces)));
 }
 
 template <int Degree>
@@ -43,11 +47,43 @@ PieceIntegral<> integrate_scalar(const LinearPiece<Degree>& piece, bool associat
   return associated ? integrate_node_by_node<AssociatedSums>(piece) : integrate_node_by_node<PlainSums>(piece);
 }
 
+template <int Degree>
+OpacityPiece<Degree, Lanes> in_lanes(const OpacityPiece<Degree, Eight>& pieces) {
+  OpacityPiece<Degree, Lanes> result;
+  for (std::size_t j = 0; j <= Degree; ++j) {
+    result.x[j] = Lanes(pieces.x[j]);
+    result.opacity[j] = Lanes(pieces.opacity[j]);
+    result.clear[j] = Lanes(pieces.clear[j]);
+  }
+  result.x_error = Lanes(pieces.x_error);
+  result.clear_error = Lanes(pieces.clear_error);
+  result.length = Lanes(pieces.length);
+  result.units = Lanes(pieces.units);
+  return result;
+}
+
+template <int Degree>
+[[gnu::flatten]] PieceIntegral<Eight> integrate_eight_opacities(const OpacityPiece<Degree, Eight>& pieces,
+                                                                bool associated) {
+  return in_memory(integrate_opacity(in_lanes(pieces), associated));
+}
+
+template <int Degree>
+PieceIntegral<> integrate_one_opacity(const OpacityPiece<Degree>& piece, bool associated) {
+  return integrate_opacity(piece, associated);
+}
+
 Eight transmittances(const Eight& depths) { return Eight(exponential(-Lanes(depths))); }
 
 template <int Degree>
-constexpr Kernels<Degree> all_of{integrate_one<Degree>, integrate_scalar<Degree>, integrate_eight<Degree>,
-                                 crossings<Degree>,     normalise<Degree>,        transmittances};
+constexpr Kernels<Degree> all_of{integrate_one<Degree>,
+                                 integrate_scalar<Degree>,
+                                 integrate_eight<Degree>,
+                                 integrate_one_opacity<Degree>,
+                                 integrate_eight_opacities<Degree>,
+                                 crossings<Degree>,
+                                 normalise<Degree>,
+                                 transmittances};
 
 }  // namespace
 

@@ -89,7 +89,22 @@ struct StretchLight {
   Ball depth;
 };
 
+/// The light of a stretch of which no more than its optical depth is known.
+StretchLight integrate_enclosed(const BallStretch& stretch, Emission emission) {
+  const Ball total = *stretch.depth;
+  const Ball opacity = max(0.0, min(1.0, -expm1(-total)));
+  const bool is_opaque = Ball(arb::opaque_depth) <= total;
+  Ball emitted = opacity;
+  if (emission == Emission::plain)
+    emitted = is_opaque ? Ball() : stretch.length * hull(max(0.0, min(1.0, exp(-total))), 1.0);
+  const Ball weight = stretch.weight(hull(Ball(0.0), Ball(1.0)));
+  StretchLight light{.color = {}, .depth = total};
+  for (std::size_t i = 0; i < 3; ++i) light.color[i] = (stretch.color[i] + stretch.color_change[i] * weight) * emitted;
+  return light;
+}
+
 StretchLight integrate(const BallStretch& stretch, Emission emission, std::int64_t& evaluations) {
+  if (stretch.depth) return integrate_enclosed(stretch, emission);
   const Polynomial depth = stretch.length * stretch.extinction.antiderivative();
   const Ball total = depth(1.0);
   const Ball opacity = -expm1(-total);

@@ -98,6 +98,32 @@ PiecewiseLinear random_transfer(TransferShape shape, double m, Dice& dice) {
   return PiecewiseLinear({{0, nothing}});
 }
 
+PiecewiseLinear random_opacity_transfer(OpacityShape shape, double unit_length, Dice& dice) {
+  constexpr double most = 0.99;
+  std::vector<OpacityPoint> points;
+  const auto add = [&](double s, double opacity) { points.push_back({s, opacity, dice.color()}); };
+  if (shape == OpacityShape::ramp) {
+    add(0, most * dice.uniform());
+    add(1, most);
+  } else if (shape == OpacityShape::table) {
+    for (int i = 0; i <= 256; ++i) add(i / 256.0, most * dice.uniform());
+  } else {
+    std::vector<double> places(static_cast<std::size_t>(3 + dice.choice(4)));
+    for (double& s : places) s = dice.uniform();
+    std::sort(places.begin(), places.end());
+    const auto opaque = static_cast<std::size_t>(dice.choice(static_cast<int>(places.size()) - 1));
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      double opacity = most * dice.uniform();
+      if (shape == OpacityShape::contacts && i % 2 == 0) opacity = 1;
+      if (shape == OpacityShape::opaque && (i == opaque || i == opaque + 1)) opacity = 1;
+      add(places[i], opacity);
+      if (shape == OpacityShape::jumps || (shape == OpacityShape::opaque && i == opaque + 1 && dice.choice(2) == 0))
+        add(places[i], most * dice.uniform());
+    }
+  }
+  return from_opacity(points, unit_length);
+}
+
 /// s, or one of its neighbours in binary64.
 double beside(double s, Dice& dice) { return std::nextafter(s, s + dice.choice(3) - 1); }
 
@@ -163,18 +189,43 @@ IntegralCase smooth_piece(std::uint64_t seed, std::uint64_t index) {
   return piece(std::integral_constant<int, 9>{}, dice.choice(10));
 }
 
+namespace {
+
+std::vector<double> random_lengths(SignalShape signal, bool is_table, Dice& dice) {
+  const int most_pieces = is_table ? 3 : 10;
+  std::vector<double> lengths(static_cast<std::size_t>(1 + dice.choice(most_pieces)));
+  for (double& length : lengths)
+    length = signal == SignalShape::short_pieces ? dice.log_uniform(1e-9, 1) : dice.uniform(0.1, 2);
+  return lengths;
+}
+
+IntegralCase random_ray(SignalShape signal, const PiecewiseLinear& transfer, const std::vector<double>& lengths,
+                        Dice& dice) {
+  if (dice.choice(2) == 0) return {random_signal<3>(signal, transfer, lengths, dice), transfer};
+  return {random_signal<9>(signal, transfer, lengths, dice), transfer};
+}
+
+double sum_of(const std::vector<double>& lengths) {
+  double whole = 0;
+  for (const double length : lengths) whole += length;
+  return whole;
+}
+
+}  // namespace
+
 IntegralCase random_case(SignalShape signal, TransferShape transfer, std::uint64_t seed, std::uint64_t index) {
   Dice dice(seed, index);
-  const int most_pieces = transfer == TransferShape::table ? 3 : 10;
-  std::vector<double> lengths(static_cast<std::size_t>(1 + dice.choice(most_pieces)));
-  double whole = 0;
-  for (double& length : lengths) {
-    length = signal == SignalShape::short_pieces ? dice.log_uniform(1e-9, 1) : dice.uniform(0.1, 2);
-    whole += length;
-  }
-  const PiecewiseLinear function = random_transfer(transfer, dice.log_uniform(1e-9, 1e5) / whole, dice);
-  if (dice.choice(2) == 0) return {random_signal<3>(signal, function, lengths, dice), function};
-  return {random_signal<9>(signal, function, lengths, dice), function};
+  const std::vector<double> lengths = random_lengths(signal, transfer == TransferShape::table, dice);
+  const PiecewiseLinear function = random_transfer(transfer, dice.log_uniform(1e-9, 1e5) / sum_of(lengths), dice);
+  return random_ray(signal, function, lengths, dice);
+}
+
+IntegralCase random_opacity_case(SignalShape signal, OpacityShape transfer, std::uint64_t seed, std::uint64_t index) {
+  Dice dice(seed, index);
+  const std::vector<double> lengths = random_lengths(signal, transfer == OpacityShape::table, dice);
+  const PiecewiseLinear function =
+      random_opacity_transfer(transfer, sum_of(lengths) / dice.log_uniform(1e-3, 30), dice);
+  return random_ray(signal, function, lengths, dice);
 }
 
 double difference_in_radii(const Certified& a, const Certified& b) {

@@ -30,13 +30,23 @@ enum class TransferShape { ramp, tent, box, step, isoslab, table, points, jumps 
 inline constexpr std::array<std::string_view, 8> transfer_shapes{"ramp",    "tent",  "box",    "step",
                                                                  "isoslab", "table", "points", "jumps"};
 
-/// Case `index` of a seed: one polynomial between two points of the transfer function, of degree 3 or up to 9, the
-/// optical depth log-uniform from 1e-3 to 30.
+/// What a transfer function is that is linear in opacity: one interval up to 0.99; random points, or jumps, up to 0.99;
+/// a random table of 257 points; random points of which each has opacity 1 or one below, contacts; a stretch of opacity
+/// 1 between others.
+enum class OpacityShape { ramp, points, jumps, table, contacts, opaque };
+inline constexpr std::array<std::string_view, 6> opacity_shapes{"ramp",  "points",   "jumps",
+                                                                "table", "contacts", "opaque"};
+
+/// Case `index` of a seed: one polynomial between two points of the transfer function two points of the transfer
+/// function, of degree 3 or up to 9, the optical depth log-uniform from 1e-3 to 30.
 IntegralCase smooth_piece(std::uint64_t seed, std::uint64_t index);
 
 /// Case `index` of a seed: 1 to 10 pieces of these shapes; the largest extinction times the length is log-uniform from
 /// 1e-9 to 1e5. A function of its arguments alone.
 IntegralCase random_case(SignalShape signal, TransferShape transfer, std::uint64_t seed, std::uint64_t index);
+
+/// A random ray with the opacity linear between points; it is 1e-3 to 30 times as long as what the opacities are of.
+IntegralCase random_opacity_case(SignalShape signal, OpacityShape transfer, std::uint64_t seed, std::uint64_t index);
 
 /// The largest difference of a channel or of the opacity, in units of the sum of both radii: above 1 one of them is no
 /// bound. Infinite where an answer is not a number.

@@ -22,7 +22,9 @@ constexpr double slack = 1 + 0x1p-20;   // second-order terms, and the rounding 
 constexpr double negligible = 0x1p-48;  // share of an interval's extinction or colour: some roundings of x
 constexpr double brief = 0x1p-20;       // share of a stretch outside its interval that halving cannot much improve
 constexpr double shortest = 0x1p-45;    // in a piece's unit coordinate
+constexpr double briefest = 0x1p-52;    // share of a piece outside its interval where the opacity is 1 just there
 constexpr int most_refinements = 400;   // of one piece
+constexpr double most_clear_ratio = 6;  // of 1 - a on an opacity piece: more takes more points than two halves do
 constexpr std::size_t pieces_at_once = 256;
 
 /// How wrong an interval's linear functions are on a stretch that leaves it: by how much at most, and on what share.
@@ -31,18 +33,46 @@ struct Outside {
   double extinction = 0;
   double color = 0;
   bool is_settled = true;  ///< halving the stretch would not help
+  bool is_deadly = false;  ///< the ray ends there, if it is outside indeed
 };
+
+/// How wrong they are beyond an end where the opacity is 1. There -ln(1 - a), of the interval's own function or of its
+/// neighbour's, is -ln of a polynomial p of degree n. On any part of a stretch of the share v its integral is at most v
+/// (n (2 + ln(1 / v)) - ln(max |p|)), max over the whole stretch. (For n = 1, with u - r relative to its largest value,
+/// which it is enough to look at for r in [0, 1]: -ln |u - r| over a set of measure v is largest about r, and there at
+/// most v (1 + ln(2 / v)).)
+///
+/// `width`: of the stretch, in its piece. Where the crossing is known to its last bit, half a stretch tells no more.
+Outside beyond_opaque_end(const IntervalEnd& end, double share, double excess, double seen, double width, int degree,
+                          const LinearInterval& interval, const LinearIntervals& intervals) {
+  Outside outside{.share = share, .is_settled = share * width <= briefest, .is_deadly = end.is_opaque_beyond};
+  const double own = std::max(interval.at_0.extinction, interval.at_1.extinction);
+  const double units = intervals.units_per_length();
+  if (own < opaque_extinction * units) outside.extinction = 2 * own;
+  if (end.contact_slope > 0) {
+    const double most = std::min(1.0, end.contact_slope * seen);
+    outside.extinction =
+        most > 0 ? outside.extinction + slack * 2 * units * (degree * (2 - std::log(share)) - std::log(most))
+                 : HUGE_VAL;
+  }
+  outside.color =
+      excess < brief ? end.color_jump + end.color_kink * excess : intervals.most_color() + interval.most_color;
+  return outside;
+}
 
 /// How wrong they are beyond one end of the interval. For degrees n >= 3, e and f the excess at the two ends, g what is
 /// inside, x(u) >= -e (1-u)^n - f u^n + g (1 - (1-u)^n - u^n) and (1-u)^n + u^n <= 1 - 3 u (1-u), so for max(e,
 /// f) <= g/64 x is negative on at most (e + f) / (2.9 g) of the stretch.
-Outside beyond(const IntervalEnd& end, double at_begin, double at_end, double inside, const LinearInterval& interval,
-               const LinearIntervals& intervals) {
+Outside beyond(const IntervalEnd& end, double at_begin, double at_end, double inside, double width, int degree,
+               const LinearInterval& interval, const LinearIntervals& intervals) {
   const double e = std::max(0.0, -at_begin);
   const double f = std::max(0.0, -at_end);
   if (e == 0 && f == 0 && inside >= 0) return {};
   const double excess = std::max({e, f, -inside});
   Outside outside{.share = 64 * std::max(e, f) <= inside ? slack * (e + f) / (2.9 * inside) : 1};
+  if (end.contact_slope > 0 || end.is_opaque_beyond)
+    return beyond_opaque_end(end, outside.share, excess, std::max(at_begin, at_end), width, degree, interval,
+                             intervals);
   if (excess <= end.reach) {
     outside.extinction = end.extinction_jump + end.extinction_kink * excess;
     outside.color = end.color_jump + end.color_kink * excess;
@@ -53,7 +83,7 @@ Outside beyond(const IntervalEnd& end, double at_begin, double at_end, double in
     outside.color = intervals.most_color() + interval.most_color + color_slope * excess;
   }
   outside.is_settled =
-      outside.share <= brief || (outside.share * outside.extinction <= negligible * interval.most_extinction &&
+      outside.share <= brief || (outside.share * outside.extinction <= negligible * interval.typical_extinction &&
                                  outside.share * outside.color <= negligible * interval.most_color);
   return outside;
 }
@@ -74,6 +104,9 @@ struct Sum {
   double color_error = 0;
   double nodes = 0;
   std::size_t pieces = 0;
+  double doubt = 0;           ///< light that may have been lost already, where the ray may have touched what is opaque
+  double pending = 0;         ///< the same of the last piece: none if the ray ends with it anyway
+  double end_extinction = 0;  ///< bound just behind the ray's end
 
   [[nodiscard]] bool is_opaque() const { return depth.high - depth_error > opaque_depth; }
 
@@ -86,15 +119,76 @@ struct Sum {
   }
 };
 
+/// Where the integral of a piece comes from, for transfer functions that are linear in opacity.
+struct Source {
+  enum class Kind { linear, opacity, known };
+  Kind kind;
+  std::size_t index;
+};
+
+/// How far a piece may be from the signal meant.
+struct PieceError {
+  double signal = 0;
+  bool has_exact_ends = true;  ///< both end values are the signal's own
+};
+
+/// A stretch in an interval whose opacity is 1 at one of its ends.
+template <int Degree>
+struct Contact {
+  const Piece<Degree>& piece;
+  PieceError error;
+  std::size_t piece_index;
+  std::size_t interval;
+  bool is_at_top;         ///< x is 1 there, else 0
+  bool is_inside;         ///< it certainly does not go beyond
+  double slope;           ///< of 1 - a, by the scalar's distance from there
+  double width;           ///< of the interval
+  double distance_error;  ///< of the scalar
+};
+
+/// Some of it: in the piece's unit coordinate, and the scalar's distance.
+template <int Degree>
+struct ContactStretch {
+  double begin;
+  double end;
+  Bernstein<Degree, DoubleDouble> distance;
+};
+
+/// Whether a piece that is not opaque may touch what is, so that the ray ends; or the other way round.
+enum class Doubt { none, may_end, may_go_on };
+
 /// What a ray of a degree leaves behind for the next one: memory.
 template <int Degree>
 struct Buffers {
   std::vector<KnotStretch> stretches;
-  std::vector<LinearPiece<Degree, Eight>> pieces;  ///< the first `count` lanes are in use
+  std::vector<LinearPiece<Degree, Eight>> pieces;  ///< the first lanes are in use, `linear_count` in all
   std::vector<PieceIntegral<Eight>> integrals;
-  std::vector<std::size_t> intervals;
-  std::vector<double> depth_errors;  ///< by what the scalar does outside its interval
+  std::vector<std::size_t> intervals;  ///< one for every piece, in their order along the ray
+  std::vector<double> depth_errors;    ///< by what the scalar does outside its interval
   std::vector<double> color_errors;
+  std::size_t linear_count = 0;
+  // Only where the opacity is linear:
+  std::vector<Source> sources;
+  std::vector<Doubt> doubts;
+  bool is_over = false;  ///< the ray has ended
+  std::vector<OpacityPiece<Degree, Eight>> opacity_pieces;
+  std::size_t opacity_count = 0;
+  std::vector<PieceIntegral<>> known;
+  std::vector<PieceIntegral<Eight>> in_order;
+
+  void clear_pieces() {
+    pieces.clear();
+    intervals.clear();
+    depth_errors.clear();
+    color_errors.clear();
+    linear_count = 0;
+    sources.clear();
+    doubts.clear();
+    is_over = false;
+    opacity_pieces.clear();
+    opacity_count = 0;
+    known.clear();
+  }
 };
 
 template <int Degree>
@@ -123,6 +217,14 @@ bool is_noise(const NormalisedStretches<Degree>& normalised, std::size_t lane) {
   return most - least <= 16 * normalised.x_error[lane];
 }
 
+/// Appends a piece whose integral is known.
+template <int Degree>
+void append(const PieceIntegral<>& integral, std::size_t interval, Buffers<Degree>& buffers) {
+  buffers.sources.push_back({Source::Kind::known, buffers.known.size()});
+  buffers.known.push_back(integral);
+  buffers.intervals.push_back(interval);
+}
+
 }  // namespace
 
 struct RayIntegral::Parts {
@@ -135,11 +237,33 @@ struct RayIntegral::Parts {
   template <int Degree>
   void fit(const Chain<Degree>& signal, const SignalError& error, Buffers<Degree>& buffers) const;
   template <int Degree>
-  void accept_or_halve(const Piece<Degree>& piece, double signal_error, const KnotStretch& stretch,
+  void accept_or_halve(const Piece<Degree>& piece, const PieceError& error, const KnotStretch& stretch,
                        const NormalisedStretches<Degree>& normalised, std::size_t lane, int& budget,
                        Buffers<Degree>& buffers) const;
   template <int Degree>
+  void append_opacity(const OpacityPiece<Degree>& piece, int level, std::size_t interval,
+                      Buffers<Degree>& buffers) const;
+  template <int Degree>
+  void append_contact(const Piece<Degree>& piece, const PieceError& error, const KnotStretch& stretch, int& budget,
+                      Buffers<Degree>& buffers) const;
+  template <int Degree>
+  void append_contact_stretch(const Contact<Degree>& contact, const ContactStretch<Degree>& stretch, int level,
+                              int& budget, Buffers<Degree>& buffers) const;
+  template <int Degree>
+  void append_neighbour(const Contact<Degree>& contact, const ContactStretch<Degree>& stretch, int& budget,
+                        Buffers<Degree>& buffers) const;
+  template <int Degree>
+  void append_touching(const OpacityPiece<Degree>& piece, const Contact<Degree>& contact,
+                       Buffers<Degree>& buffers) const;
+  template <int Degree>
+  void append_opaque(std::size_t interval, const NormalisedStretches<Degree>& normalised, std::size_t lane,
+                     bool is_certain, Buffers<Degree>& buffers) const;
+  template <int Degree>
+  void find_integrals(Buffers<Degree>& buffers) const;
+  template <int Degree>
   void integrate_pieces(Buffers<Degree>& buffers, Sum& sum) const;
+  template <int Degree>
+  void add_end(const Chain<Degree>& signal, const SignalError& error, Sum& sum) const;
   [[nodiscard]] Certified finish(const Sum& sum, double length, double hidden, const SignalError& error,
                                  double tolerance) const;
 
@@ -152,14 +276,18 @@ struct RayIntegral::Parts {
 /// Makes pieces of the stretches, front to back.
 template <int Degree>
 void RayIntegral::Parts::fit(const Chain<Degree>& signal, const SignalError& error, Buffers<Degree>& buffers) const {
-  const auto error_of = [&error](std::size_t piece) { return error.of_pieces.empty() ? 0.0 : error.of_pieces[piece]; };
+  const auto error_of = [&error](std::size_t piece) -> PieceError {
+    if (error.of_pieces.empty()) return {};
+    const double signal = error.of_pieces[piece];
+    return {signal, error.exact_ends.empty() ? signal == 0 : error.exact_ends[piece]};
+  };
   const auto& stretches = buffers.stretches;
   Stretches<Degree> eight;
   for (std::size_t first = 0; first < stretches.size(); first += lane_count) {
     const std::size_t used = std::min(lane_count, stretches.size() - first);
     for (std::size_t lane = 0; lane < lane_count; ++lane) {
       const KnotStretch& stretch = stretches[first + std::min(lane, used - 1)];
-      set_stretch(eight, lane, signal.pieces[stretch.piece].polynomial, error_of(stretch.piece), stretch.begin,
+      set_stretch(eight, lane, signal.pieces[stretch.piece].polynomial, error_of(stretch.piece).signal, stretch.begin,
                   stretch.end, intervals_[stretch.interval]);
     }
     const auto normalised = kernels<Degree>().normalise(eight);
@@ -174,15 +302,20 @@ void RayIntegral::Parts::fit(const Chain<Degree>& signal, const SignalError& err
 
 /// Appends a stretch that is inside its interval but for what its errors cover; else its two halves.
 template <int Degree>
-void RayIntegral::Parts::accept_or_halve(const Piece<Degree>& piece, double signal_error, const KnotStretch& stretch,
-                                         const NormalisedStretches<Degree>& normalised, std::size_t lane, int& budget,
-                                         Buffers<Degree>& buffers) const {
+void RayIntegral::Parts::accept_or_halve(const Piece<Degree>& piece, const PieceError& error,
+                                         const KnotStretch& stretch, const NormalisedStretches<Degree>& normalised,
+                                         std::size_t lane, int& budget, Buffers<Degree>& buffers) const {
   const LinearInterval& interval = intervals_[stretch.interval];
-  const auto beyond_end = [&](const IntervalEnd& end, const Margins& margins) {
-    return beyond(end, margins.at_begin[lane], margins.at_end[lane], margins.inside[lane], interval, intervals_);
-  };
-  const std::array ends{beyond_end(interval.end_0, normalised.from_0), beyond_end(interval.end_1, normalised.from_1)};
+  if (buffers.is_over) return;
   const double width = stretch.end - stretch.begin;
+  const auto beyond_end = [&](const IntervalEnd& end, const Margins& margins) {
+    return beyond(end, margins.at_begin[lane], margins.at_end[lane], margins.inside[lane], width, Degree, interval,
+                  intervals_);
+  };
+  std::array ends{beyond_end(interval.end_0, normalised.from_0), beyond_end(interval.end_1, normalised.from_1)};
+  // Where the interval's own opacity comes to 1 the parts are cut by better means (`append_contact`).
+  for (std::size_t end = 0; end < 2; ++end)
+    if (interval.is_opacity && interval.clear[end] == 0) ends[end] = {};
   const bool is_settled = ends[0].is_settled && ends[1].is_settled;
   if (!is_settled && width > shortest && budget > 0 && !is_noise(normalised, lane)) {
     --budget;
@@ -193,8 +326,8 @@ void RayIntegral::Parts::accept_or_halve(const Piece<Degree>& piece, double sign
       const auto above = std::upper_bound(knots.begin(), knots.end(), value);
       const KnotStretch half{stretch.piece, begin, end, static_cast<std::size_t>(above - knots.begin())};
       Stretches<Degree> eight;
-      set_stretch(eight, 0, piece.polynomial, signal_error, begin, end, intervals_[half.interval]);
-      accept_or_halve(piece, signal_error, half, kernels<Degree>().normalise(eight), 0, budget, buffers);
+      set_stretch(eight, 0, piece.polynomial, error.signal, begin, end, intervals_[half.interval]);
+      accept_or_halve(piece, error, half, kernels<Degree>().normalise(eight), 0, budget, buffers);
     }
     return;
   }
@@ -213,27 +346,267 @@ void RayIntegral::Parts::accept_or_halve(const Piece<Degree>& piece, double sign
     else
       color_error += stretch_outside * (outside.color + length * outside.extinction * color);
   }
-  const std::size_t to = buffers.intervals.size() % lane_count;
-  if (to == 0) buffers.pieces.emplace_back().length.fill(1);
-  LinearPiece<Degree, Eight>& result = buffers.pieces.back();
-  if (interval.is_linear) {
-    for (std::size_t j = 0; j <= Degree; ++j) result.x[j][to] = normalised.x[j][lane];
-    result.x_error[to] = normalised.x_error[lane];
+  // No depth is known of a stretch within rounding of what is opaque: the ray may end there, or it may not.
+  bool may_end = ends[0].is_deadly || ends[1].is_deadly;
+  if (!std::isfinite(depth_error)) {
+    may_end = true;
+    depth_error = 0;
+    color_error = std::max(ends[0].color, ends[1].color) + interval.most_color * brief;
   }
-  result.extinction_at_0[to] = interval.at_0.extinction;
-  result.extinction_at_1[to] = interval.at_1.extinction;
-  result.length[to] = length;
-  buffers.intervals.push_back(stretch.interval);
-  buffers.depth_errors.push_back(depth_error);
-  buffers.color_errors.push_back(color_error);
+  const std::size_t first = buffers.intervals.size();
+  if (intervals_.units_per_length() > 0 && interval.is_opaque) {
+    // It ends at the beginning, wherever that is.
+    const double lost = std::min(
+        1.0, length * std::max(ends[0].share, ends[1].share) * most_mean_of_opaque * intervals_.units_per_length());
+    color_error = lost * std::max(ends[0].color, ends[1].color);
+    depth_error = 0;
+    append_opaque(stretch.interval, normalised, lane, is_settled, buffers);
+  } else if (interval.is_opacity && (interval.clear[0] == 0 || interval.clear[1] == 0)) {
+    append_contact(piece, error, stretch, budget, buffers);
+  } else if (interval.is_opacity) {
+    OpacityPiece<Degree> result{
+        .x_error = normalised.x_error[lane],
+        .clear_error = slack * std::abs(interval.opacity[1] - interval.opacity[0]) * normalised.x_error[lane],
+        .length = length,
+        .units = length * intervals_.units_per_length()};
+    for (std::size_t j = 0; j <= Degree; ++j) {
+      const double x = normalised.x[j][lane];
+      result.x[j] = x;
+      result.opacity[j] = interval.opacity[0] * (1 - x) + interval.opacity[1] * x;
+      result.clear[j] = interval.clear[0] * (1 - x) + interval.clear[1] * x;
+    }
+    append_opacity(result, 0, stretch.interval, buffers);
+  } else {
+    const std::size_t to = buffers.linear_count % lane_count;
+    if (to == 0) buffers.pieces.emplace_back().length.fill(1);
+    LinearPiece<Degree, Eight>& result = buffers.pieces.back();
+    if (interval.is_linear) {
+      for (std::size_t j = 0; j <= Degree; ++j) result.x[j][to] = normalised.x[j][lane];
+      result.x_error[to] = normalised.x_error[lane];
+    }
+    result.extinction_at_0[to] = interval.at_0.extinction;
+    result.extinction_at_1[to] = interval.at_1.extinction;
+    result.length[to] = length;
+    if (intervals_.units_per_length() > 0) buffers.sources.push_back({Source::Kind::linear, buffers.linear_count});
+    ++buffers.linear_count;
+    buffers.intervals.push_back(stretch.interval);
+  }
+  // What is outside counts once, whatever parts the stretch is done in.
+  buffers.depth_errors.resize(buffers.intervals.size());
+  buffers.color_errors.resize(buffers.intervals.size());
+  buffers.depth_errors[first] = depth_error;
+  buffers.color_errors[first] = color_error;
+  if (intervals_.has_opaque_points()) {
+    buffers.doubts.resize(buffers.intervals.size());
+    if (may_end && !interval.is_opaque) buffers.doubts.back() = Doubt::may_end;
+  }
+}
+
+/// Appends an opacity piece, in parts on which 1 - a varies little enough for eight of them to be done side by side.
+template <int Degree>
+void RayIntegral::Parts::append_opacity(const OpacityPiece<Degree>& piece, int level, std::size_t interval,
+                                        Buffers<Degree>& buffers) const {
+  const auto [least, most] = std::minmax_element(piece.clear.begin(), piece.clear.end());
+  if (*most > most_clear_ratio * *least) {
+    if (is_undividable(piece, level)) {
+      append(integrate(piece, emission_), interval, buffers);
+      return;
+    }
+    const auto [front, back] = halves(piece);
+    append_opacity(front, level + 1, interval, buffers);
+    append_opacity(back, level + 1, interval, buffers);
+    return;
+  }
+  const std::size_t to = buffers.opacity_count % lane_count;
+  if (to == 0) {
+    auto& eight = buffers.opacity_pieces.emplace_back();
+    for (Eight& clear : eight.clear) clear.fill(1);
+    eight.length.fill(1);
+    eight.units.fill(1);
+  }
+  OpacityPiece<Degree, Eight>& result = buffers.opacity_pieces.back();
+  for (std::size_t j = 0; j <= Degree; ++j) {
+    result.x[j][to] = piece.x[j];
+    result.opacity[j][to] = piece.opacity[j];
+    result.clear[j][to] = piece.clear[j];
+  }
+  result.x_error[to] = piece.x_error;
+  result.clear_error[to] = piece.clear_error;
+  result.length[to] = piece.length;
+  result.units[to] = piece.units;
+  buffers.sources.push_back({Source::Kind::opacity, buffers.opacity_count++});
+  buffers.intervals.push_back(interval);
+}
+
+/// Appends a stretch in an interval whose opacity is 1 at an end, in parts, from the scalar's distance to there. That
+/// is carried in pairs: near 1 the rounding of x would hide it.
+template <int Degree>
+void RayIntegral::Parts::append_contact(const Piece<Degree>& piece, const PieceError& error, const KnotStretch& stretch,
+                                        int& budget, Buffers<Degree>& buffers) const {
+  const LinearInterval& interval = intervals_[stretch.interval];
+  const bool is_at_top = interval.clear[1] == 0;
+  const double knot = is_at_top ? interval.top : interval.bottom;
+  const double width = interval.top - interval.bottom;
+  Bernstein<Degree, DoubleDouble> distance;
+  double reach = 0;
+  bool is_inside = true;
+  for (std::size_t j = 0; j <= Degree; ++j) {
+    const double s = piece.polynomial.coefficients[j];
+    distance.coefficients[j] = is_at_top ? two_sum(knot, -s) : two_sum(s, -knot);
+    reach = std::max(reach, std::abs(distance.coefficients[j].high));
+    // What adds to a coefficient's error is worth nothing at the piece's ends where those are exact.
+    const bool is_exact = error.has_exact_ends && (j == 0 || j == Degree);
+    is_inside = is_inside && distance.coefficients[j].high >= (is_exact ? 0 : error.signal);
+  }
+  // De Casteljau's steps in pairs, and all the halvings that may follow, err by less than 2^-94 of the largest
+  // distance.
+  const Contact<Degree> contact{.piece = piece,
+                                .error = error,
+                                .piece_index = stretch.piece,
+                                .interval = stretch.interval,
+                                .is_at_top = is_at_top,
+                                .is_inside = is_inside,
+                                .slope = interval.clear[is_at_top ? 0 : 1] / width,
+                                .width = width,
+                                .distance_error = slack * (error.signal + 0x1p-94 * reach)};
+  append_contact_stretch(contact, {stretch.begin, stretch.end, distance.restricted(stretch.begin, stretch.end)}, 0,
+                         budget, buffers);
+}
+
+template <int Degree>
+void RayIntegral::Parts::append_contact_stretch(const Contact<Degree>& contact, const ContactStretch<Degree>& stretch,
+                                                int level, int& budget, Buffers<Degree>& buffers) const {
+  if (buffers.is_over) return;
+  const double length = (stretch.end - stretch.begin) * contact.piece.length;
+  OpacityPiece<Degree> piece{.clear_error = slack * contact.slope * contact.distance_error,
+                             .length = length,
+                             .units = length * intervals_.units_per_length()};
+  double least = HUGE_VAL;
+  double most = -HUGE_VAL;
+  for (std::size_t j = 0; j <= Degree; ++j) {
+    const double d = stretch.distance.coefficients[j].high;
+    const double share = d / contact.width;
+    piece.x[j] = contact.is_at_top ? 1 - share : share;
+    piece.clear[j] = contact.slope * d;
+    piece.opacity[j] = 1 - piece.clear[j];
+    least = std::min(least, d);
+    most = std::max(most, d);
+    piece.x_error = std::max(piece.x_error, std::abs(share));
+  }
+  piece.x_error = slack * (4 * unit_roundoff * std::max(1.0, piece.x_error) + contact.distance_error / contact.width);
+  // Small opacities come as 1 less their rest.
+  if (contact.slope * most > 0.5) piece.clear_error += 4 * unit_roundoff;
+  if (most < -contact.distance_error) {
+    append_neighbour(contact, stretch, budget, buffers);
+    return;
+  }
+  if (most <= most_clear_ratio * least) {
+    append_opacity(piece, level, contact.interval, buffers);
+    return;
+  }
+  const double middle = stretch.begin + (stretch.end - stretch.begin) / 2;
+  ContactStretch<Degree> front{stretch.begin, middle, {}};
+  ContactStretch<Degree> back{middle, stretch.end, stretch.distance};
+  auto& points = back.distance.coefficients;
+  for (std::size_t last = Degree; last > 0; --last) {
+    front.distance.coefficients[Degree - last] = points[0];
+    for (std::size_t i = 0; i < last; ++i) points[i] = (points[i] + points[i + 1]) * 0.5;
+  }
+  front.distance.coefficients[Degree] = points[0];
+  const auto is_hidden = [&](const ContactStretch<Degree>& half) {
+    return std::all_of(half.distance.coefficients.begin(), half.distance.coefficients.end(),
+                       [&](const DoubleDouble& d) { return std::abs(d.high) <= 4 * contact.distance_error; });
+  };
+  if (is_undividable(piece, level) || is_hidden(front) || is_hidden(back)) {
+    append_touching(piece, contact, buffers);
+    return;
+  }
+  append_contact_stretch(contact, front, level + 1, budget, buffers);
+  append_contact_stretch(contact, back, level + 1, budget, buffers);
+}
+
+/// Appends a stretch that is beyond the contact, in the neighbour's interval.
+template <int Degree>
+void RayIntegral::Parts::append_neighbour(const Contact<Degree>& contact, const ContactStretch<Degree>& stretch,
+                                          int& budget, Buffers<Degree>& buffers) const {
+  const std::size_t neighbour = contact.is_at_top ? contact.interval + 1 : contact.interval - 1;
+  const KnotStretch beyond{contact.piece_index, stretch.begin, stretch.end, neighbour};
+  Stretches<Degree> eight;
+  set_stretch(eight, 0, contact.piece.polynomial, contact.error.signal, stretch.begin, stretch.end,
+              intervals_[neighbour]);
+  const auto normalised = kernels<Degree>().normalise(eight);
+  if (intervals_[neighbour].is_opaque)
+    append_opaque(neighbour, normalised, 0, true, buffers);
+  else
+    accept_or_halve(contact.piece, contact.error, beyond, normalised, 0, budget, buffers);
+}
+
+/// Appends a stretch so short that all that is known of it is bounds. Beyond the contact the neighbour's function
+/// holds: another opacity that falls from 1, or anything less, or the ray ends.
+template <int Degree>
+void RayIntegral::Parts::append_touching(const OpacityPiece<Degree>& piece, const Contact<Degree>& contact,
+                                         Buffers<Degree>& buffers) const {
+  const LinearInterval& here = intervals_[contact.interval];
+  const IntervalEnd& end = contact.is_at_top ? here.end_1 : here.end_0;
+  PieceIntegral<> integral = crude(piece, emission_);
+  const bool is_known = std::isfinite(integral.depth_error);
+  if (!contact.is_inside) {
+    const double ratio = contact.slope * contact.width / end.contact_slope;
+    integral.depth_error += integral.depth + piece.units * std::max(0.0, std::log(ratio));
+    integral.weight_error += std::abs(integral.weight_0) + std::abs(integral.weight_1);
+  }
+  if (!is_known) integral.depth_error = 0;
+  append(integral, contact.interval, buffers);
+  buffers.doubts.resize(buffers.intervals.size());
+  if (!is_known || (end.is_opaque_beyond && !contact.is_inside)) buffers.doubts.back() = Doubt::may_end;
+}
+
+/// Appends what is opaque: the ray ends at its beginning, if it `is_certain` that it is there.
+template <int Degree>
+void RayIntegral::Parts::append_opaque(std::size_t interval, const NormalisedStretches<Degree>& normalised,
+                                       std::size_t lane, bool is_certain, Buffers<Degree>& buffers) const {
+  const bool has_color = intervals_[interval].is_linear;
+  const double x = has_color ? normalised.x[0][lane] : 0;
+  const double x_error = has_color ? normalised.x_error[lane] : 0;
+  const bool is_associated = emission_ == Emission::associated;
+  append({.weight_0 = is_associated ? 1 - x : 0,
+          .weight_1 = is_associated ? x : 0,
+          .weight_error = slack * (x_error + 4 * unit_roundoff * std::max(1.0, std::abs(x))),
+          .depth = beyond_opaque},
+         interval, buffers);
+  buffers.is_over = is_certain;
+  buffers.doubts.resize(buffers.intervals.size());
+  buffers.doubts.back() = is_certain ? Doubt::none : Doubt::may_go_on;
+}
+
+/// The integrals of all pieces, in their order along the ray.
+template <int Degree>
+void RayIntegral::Parts::find_integrals(Buffers<Degree>& buffers) const {
+  buffers.integrals.clear();
+  for (const auto& piece : buffers.pieces) buffers.integrals.push_back(integrate(piece, emission_));
+  if (buffers.sources.empty()) return;
+  const std::size_t linear_eights = buffers.pieces.size();
+  for (const auto& piece : buffers.opacity_pieces) buffers.integrals.push_back(integrate(piece, emission_));
+  buffers.in_order.assign((buffers.sources.size() + lane_count - 1) / lane_count, {});
+  for (std::size_t i = 0; i < buffers.sources.size(); ++i) {
+    const auto [kind, index] = buffers.sources[i];
+    PieceIntegral<Eight>& to = buffers.in_order[i / lane_count];
+    const std::size_t lane = i % lane_count;
+    if (kind == Source::Kind::known) {
+      set_lane(to, lane, buffers.known[index]);
+    } else {
+      const std::size_t eight = index / lane_count + (kind == Source::Kind::opacity ? linear_eights : 0);
+      set_lane(to, lane, lane_of(buffers.integrals[eight], index % lane_count));
+    }
+  }
+  std::swap(buffers.integrals, buffers.in_order);
 }
 
 /// Integrates the pieces and adds them to the sum.
 template <int Degree>
 void RayIntegral::Parts::integrate_pieces(Buffers<Degree>& buffers, Sum& sum) const {
   const std::size_t count = buffers.intervals.size();
-  buffers.integrals.clear();
-  for (const auto& piece : buffers.pieces) buffers.integrals.push_back(integrate(piece, emission_));
+  find_integrals(buffers);
   for (std::size_t first = 0; first < count; first += lane_count) {
     const PieceIntegral<Eight>& integrals = buffers.integrals[first / lane_count];
     const std::size_t used = std::min(lane_count, count - first);
@@ -262,13 +635,33 @@ void RayIntegral::Parts::integrate_pieces(Buffers<Degree>& buffers, Sum& sum) co
           slack * (std::min(1.0, transmittance + drift) * color_error +
                    color.abs().maxCoeff() * (drift + transmittance * (exponential_error + 6 * unit_roundoff)));
       sum.add_color(transmittance * color);
+      if (buffers.doubts.empty()) continue;
+      const Doubt doubt = buffers.doubts[first + lane];
+      const double most_seen = std::min(1.0, transmittance + drift);
+      if (!interval.is_opaque) sum.doubt = std::max(sum.doubt, sum.pending);
+      if (doubt == Doubt::may_go_on) sum.doubt = std::max(sum.doubt, most_seen);
+      sum.pending = doubt == Doubt::may_end ? most_seen : 0;
     }
   }
   sum.pieces += count;
-  buffers.pieces.clear();
-  buffers.intervals.clear();
-  buffers.depth_errors.clear();
-  buffers.color_errors.clear();
+  buffers.clear_pieces();
+}
+
+/// What the unknown last bit of a ray's length costs where the opacity may be 1 just there.
+template <int Degree>
+void RayIntegral::Parts::add_end(const Chain<Degree>& signal, const SignalError& error, Sum& sum) const {
+  sum.doubt = std::max(sum.doubt, sum.pending);
+  if (signal.pieces.empty() || !(error.of_length + error.unclaimed > 0)) return;
+  const auto& piece = signal.pieces.back();
+  double steepest = 0;
+  const auto& b = piece.polynomial.coefficients;
+  for (std::size_t j = 0; j < Degree; ++j) steepest = std::max(steepest, std::abs(b[j + 1] - b[j]));
+  const double reach = slack * (2 * Degree * steepest * error.of_length / piece.length) +
+                       (error.of_pieces.empty() ? 0 : error.of_pieces.back());
+  const double extinction = intervals_.most_extinction(b[Degree] - reach, b[Degree] + reach);
+  const double most = most_mean_of_opaque * intervals_.units_per_length();
+  sum.end_extinction = std::min(extinction, most);
+  if (!(extinction <= most)) sum.doubt = std::max(sum.doubt, exponential(-sum.depth.high));
 }
 
 /// The whole ray: what the sums, an unknown end and what is hidden behind opaque matter add to the radius.
@@ -276,11 +669,17 @@ Certified RayIntegral::Parts::finish(const Sum& sum, double length, double hidde
                                      double tolerance) const {
   const bool associated = emission_ == Emission::associated;
   const double most_color = intervals_.most_color();
-  const double most_extinction = intervals_.most_extinction();
+  // The extinction has no bound where the opacity is 1; its means have one.
+  const double most_extinction = intervals_.has_opaque_points() ? most_mean_of_opaque * intervals_.units_per_length()
+                                                                : intervals_.most_extinction();
+  const double end_extinction = intervals_.has_opaque_points() ? sum.end_extinction : most_extinction;
+  const double unknown_depth = intervals_.has_opaque_points()
+                                   ? end_extinction * error.of_length + most_extinction * error.unclaimed
+                                   : most_extinction * (error.of_length + error.unclaimed);
   const double density = associated ? most_extinction * most_color : most_color;
+  const double end_density = associated ? end_extinction * most_color : most_color;
   const double depth = sum.depth.high;
-  const double depth_error =
-      slack * (sum.depth_error + depth * unit_roundoff + most_extinction * (error.of_length + error.unclaimed));
+  const double depth_error = slack * (sum.depth_error + depth * unit_roundoff + unknown_depth);
   const double transmittance = exponential(-depth);
   const double drift = drift_of(depth, transmittance, depth_error);
   const double most_hidden = hidden > 0 ? exponential(-opaque_depth) : 0;
@@ -292,12 +691,13 @@ Certified RayIntegral::Parts::finish(const Sum& sum, double length, double hidde
   const double count = static_cast<double>(sum.pieces) + 1;
   const double summation = (2 + 2 * count * count * unit_roundoff) * unit_roundoff;
   const double color_error = sum.color_error + summation * brightest +
-                             std::min(1.0, transmittance + drift) * density * error.of_length +
+                             std::min(1.0, transmittance + drift) * end_density * error.of_length +
                              // Two things may be wrong, anywhere on the ray: the source there, and what is seen through
                              // it.
                              density * (associated ? 2 : 1 + length * most_extinction) * error.unclaimed +
-                             most_hidden * (associated ? most_color : most_color * hidden);
-  const double opacity_error = drift + most_hidden + 4 * unit_roundoff * result.opacity;
+                             most_hidden * (associated ? most_color : most_color * hidden) +
+                             sum.doubt * (associated ? most_color : most_color * length);
+  const double opacity_error = drift + most_hidden + sum.doubt + 4 * unit_roundoff * result.opacity;
   result.radius = slack * std::max(color_error, opacity_error);
   result.evaluations = static_cast<std::int64_t>(sum.nodes);
 
@@ -329,6 +729,7 @@ Certified RayIntegral::Parts::integrate_ray(const Chain<Degree>& signal, const S
       break;
     }
   }
+  if (intervals_.has_opaque_points()) add_end(signal, error, sum);
   return finish(sum, signal.length(), hidden, error, tolerance);
 }
 

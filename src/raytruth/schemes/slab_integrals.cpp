@@ -1,7 +1,10 @@
 #include "raytruth/schemes/slab_integrals.hpp"
 
+#include <boost/math/quadrature/tanh_sinh.hpp>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace raytruth {
@@ -28,6 +31,30 @@ Vec4 emission_and_extinction(const Optics& optics, Emission emission) {
   return {q[0], q[1], q[2], optics.extinction};
 }
 
+/// The means of q and tau on a stretch where the opacity is linear in x: double-exponential quadrature, which does not
+/// mind the logarithm at an opacity of 1. Infinite where the opacity is 1 throughout.
+Vec4 mean_opacity_optics(const Bernstein<3>& x, const std::array<double, 2>& opacities, double units_per_length,
+                         const Optics& a, const Optics& b, Emission emission) {
+  const auto extinction = [&](double u) {
+    const double here = x.value(u);
+    const double opacity = opacities[0] * (1 - here) + opacities[1] * here;
+    const double clear = (1 - opacities[0]) * (1 - here) + (1 - opacities[1]) * here;
+    if (!(clear > 0)) return opaque_extinction * units_per_length;
+    return units_per_length * (opacity < 0.5 ? -std::log1p(-opacity) : -std::log(clear));
+  };
+  constexpr double tolerance = 0x1p-40;
+  thread_local boost::math::quadrature::tanh_sinh<double> quadrature;
+  const auto mean = [](const auto& f) { return quadrature.integrate(f, 0.0, 1.0, tolerance); };
+  const double mean_extinction = mean(extinction);
+  if (emission == Emission::plain) {
+    const Vector3<double> color = a.color + x.integral() * (b.color - a.color);
+    return {color[0], color[1], color[2], mean_extinction};
+  }
+  const double mean_product = mean([&](double u) { return x.value(u) * extinction(u); });
+  const Vector3<double> q = (mean_extinction - mean_product) * a.color + mean_product * b.color;
+  return {q[0], q[1], q[2], mean_extinction};
+}
+
 /// The means of q and tau where the signal stays between two neighbouring points.
 Vec4 mean_optics(const Bernstein<3>& signal, const PiecewiseLinear& transfer, Emission emission) {
   const auto& points = transfer.points();
@@ -43,6 +70,11 @@ Vec4 mean_optics(const Bernstein<3>& signal, const PiecewiseLinear& transfer, Em
   const double x_mean = x.integral();
   const Optics& a = before.optics;
   const Optics& b = after->optics;
+  if (transfer.is_linear_in_opacity()) {
+    const auto index = static_cast<std::size_t>(after - points.begin());
+    return mean_opacity_optics(x, {transfer.opacities()[index - 1], transfer.opacities()[index]},
+                               1 / transfer.unit_length(), a, b, emission);
+  }
   const double extinction = a.extinction + x_mean * (b.extinction - a.extinction);
   Vector3<double> q = a.color + x_mean * (b.color - a.color);
   if (emission == Emission::associated) {

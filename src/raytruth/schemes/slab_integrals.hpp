@@ -15,7 +15,7 @@ using SlabPieces = std::span<const Piece<3>>;
 
 /// integral q dt (three channels) and integral tau dt over the slab, in closed form: split where the signal meets the
 /// transfer function's points, tau is linear in s and q linear or quadratic; the means of s and s^2 are those of the
-/// Bernstein coefficients.
+/// Bernstein coefficients. Where the opacity is linear, by quadrature.
 Rules<double>::vec4 optics_integral(SlabPieces slab, const PiecewiseLinear& transfer, Emission emission);
 
 /// The slab as a table holds it that neglects self-attenuation: C = integral q dt, A = 1 - exp(-integral tau dt).

@@ -39,13 +39,17 @@ struct LitSum {
 /// differ by no more than `tolerance` times max(1, its light). The sum of these differences is an estimate that is far
 /// too large where the light is smooth: it is measured, not proven.
 ///
+/// A transfer function that is linear in opacity is taken as `linear_in_extinction` makes it.
+///
 /// Holds buffers: one object per thread.
 template <int Degree>
 class LitIntegral {
  public:
   /// Throws InputError as LinearIntervals does.
   LitIntegral(const PiecewiseLinear& transfer, Emission emission, double tolerance = 1e-10)
-      : intervals_(transfer), is_associated_(emission == Emission::associated), tolerance_(tolerance) {}
+      : intervals_(linear_in_extinction(transfer)),
+        is_associated_(emission == Emission::associated),
+        tolerance_(tolerance) {}
 
   /// Adds a piece of this length behind the sum. `light(u, extinction_slope)` gives the PointLight at the piece's unit
   /// coordinate u, where d tau / ds is that slope; it is not smooth at `breaks`, ascending, in (0, 1).

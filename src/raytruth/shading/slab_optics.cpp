@@ -18,6 +18,10 @@ Optics between(const TransferPoint& a, const TransferPoint& b, double s) {
 }  // namespace
 
 SlabOptics::SlabOptics(const PiecewiseLinear& transfer, double front, double back, double length) : length_(length) {
+  if (transfer.is_linear_in_opacity()) {
+    *this = SlabOptics(linear_in_extinction(transfer), front, back, length);
+    return;
+  }
   const double low = std::min(front, back);
   const double high = std::max(front, back);
   const auto x_of = [&](double s) { return (s / 2 - front / 2) / (back / 2 - front / 2); };

@@ -486,7 +486,8 @@ CertifiedRadiance slab_reference(const ShadedSlab& slab, const PiecewiseLinear& 
   check(slab);
   check(lighting);
   const Polynomial norm_square = chord_square(slab);
-  return SlabSum(linear(slab.front, slab.back), slab.length, transfer, emission, lighting,
+  const PiecewiseLinear in_extinction = linear_in_extinction(transfer);
+  return SlabSum(linear(slab.front, slab.back), slab.length, in_extinction, emission, lighting,
                  {chord(slab, lighting.light), norm_square}, {chord(slab, lighting.half), norm_square})(tolerance);
 }
 
@@ -496,7 +497,8 @@ CertifiedRadiance cubic_reference(const ShadedSlab& slab, const PiecewiseLinear&
   const auto cosine = [](const Cubic& a) {
     return Cosine{polynomial({Ball(a[0]), Ball(a[1]), Ball(a[2]), Ball(a[3])}), Polynomial(1.0)};
   };
-  return SlabSum(linear(slab.front, slab.back), slab.length, transfer, emission, lighting, cosine(light_cosine),
+  const PiecewiseLinear in_extinction = linear_in_extinction(transfer);
+  return SlabSum(linear(slab.front, slab.back), slab.length, in_extinction, emission, lighting, cosine(light_cosine),
                  cosine(half_cosine))(tolerance);
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <boost/math/special_functions/binomial.hpp>
+#include <boost/multiprecision/cpp_int.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -70,6 +71,19 @@ Chain<largest_degree> piecewise_polynomial(const std::vector<double>& breaks,
   return chain;
 }
 
+namespace {
+
+/// Whether a polynomial in powers of x, on [0, length], has exactly these values at its two ends.
+bool has_ends(const std::vector<double>& coefficients, double length, double begin, double end) {
+  using boost::multiprecision::cpp_rational;
+  cpp_rational value = 0;
+  for (std::size_t k = coefficients.size(); k-- > 0;)
+    value = value * cpp_rational(length) + cpp_rational(coefficients[k]);
+  return begin == coefficients.front() && value == cpp_rational(end);
+}
+
+}  // namespace
+
 SignalError piecewise_polynomial_error(const std::vector<double>& breaks,
                                        const std::vector<std::vector<double>>& coefficients,
                                        const Chain<largest_degree>& chain) {
@@ -83,6 +97,7 @@ SignalError piecewise_polynomial_error(const std::vector<double>& breaks,
     const auto is = [](double x) { return [x](double y) { return x == y; }; };
     if (std::all_of(a.begin() + 1, a.end(), is(0)) && std::all_of(b.begin(), b.end(), is(a[0]))) {
       error.of_pieces.push_back(0);
+      error.exact_ends.push_back(true);
       continue;
     }
     const DoubleDouble length = two_sum(breaks[i + 1], -breaks[i]);
@@ -96,6 +111,8 @@ SignalError piecewise_polynomial_error(const std::vector<double>& breaks,
     double magnitude = 0;
     for (std::size_t k = a.size(); k-- > 0;) magnitude = magnitude * length.high + std::abs(a[k]);
     const double stretch = largest_degree * step * std::abs(static_cast<double>(length - piece.length)) / piece.length;
+    error.exact_ends.push_back(static_cast<double>(length) == piece.length && length.low == 0 &&
+                               has_ends(a, piece.length, b.front(), b.back()));
     error.of_pieces.push_back(upwards *
                               (difference + stretch + noise * magnitude + std::numeric_limits<double>::min()));
   }

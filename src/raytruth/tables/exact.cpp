@@ -12,6 +12,9 @@
 namespace raytruth {
 
 void check_depth(const PiecewiseLinear& transfer, const TableAxes& axes) {
+  // Where the opacity is linear the depth is finite and told by its logarithm, or infinite and all light comes from the
+  // front.
+  if (transfer.is_linear_in_opacity()) return;
   double largest = 0;
   for (const TransferPoint& point : transfer.points()) largest = std::max(largest, point.optics.extinction);
   if (largest * axes.length > largest_exact_depth)

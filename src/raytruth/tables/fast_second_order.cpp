@@ -148,6 +148,7 @@ class ExactTile {
 }  // namespace
 
 bool is_linear_between_entries(const PiecewiseLinear& transfer, const TableAxes& axes) {
+  if (transfer.is_linear_in_opacity()) return false;
   const auto& points = transfer.points();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double place = (points[i].s - axes.low) / (axes.high - axes.low) * static_cast<double>(axes.size - 1);

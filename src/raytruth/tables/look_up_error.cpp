@@ -109,14 +109,13 @@ CertifiedRadiance weighted_light(const ShadedSlab& slab, const PiecewiseLinear& 
 LookUpError weighted_look_up_error(const Table<double>& table, const TableContent& content,
                                    const PiecewiseLinear& transfer, Emission emission, const TableFormat& format) {
   const TableAxes& axes = table.axes;
-  std::vector<TransferPoint> points = transfer.points();
-  for (TransferPoint& point : points) point.optics.color = {1, 1, 1};
-  const PiecewiseLinear white(std::move(points));
+  const PiecewiseLinear linear = linear_in_extinction(transfer);
+  const PiecewiseLinear white = whitened(linear);
   ErrorsAtPlaces errors;
   for (std::uint64_t i = 0; i < weighted_places_judged; ++i) {
     const auto scalars = random_scalars<2>(axes, i);
     const ShadedSlab slab{.front = scalars[0], .back = scalars[1], .length = axes.length};
-    const auto light = weighted_light(slab, content.is_white ? white : transfer, emission, content.weight);
+    const auto light = weighted_light(slab, content.is_white ? white : linear, emission, content.weight);
     Vec4 truth(light.diffuse[0], light.diffuse[1], light.diffuse[2], light.opacity);
     double radius = light.radius;
     if (content.has_white_as_alpha) {

@@ -30,18 +30,6 @@ Bernstein<3> signal_of(const std::array<double, 3>& scalars) {
 
 }  // namespace
 
-PiecewiseLinear clamped(const PiecewiseLinear& transfer, double low, double high) {
-  std::vector<TransferPoint> points{{low, transfer.at(low)}};
-  for (const TransferPoint& point : transfer.points())
-    if (low < point.s && point.s < high) points.push_back(point);
-  // A jump at the upper end is met only from below, but for the end itself, which has no extent.
-  const auto& all = transfer.points();
-  const auto at_high =
-      std::find_if(all.begin(), all.end(), [high](const TransferPoint& point) { return point.s == high; });
-  points.push_back({high, at_high != all.end() ? at_high->optics : transfer.at(high)});
-  return PiecewiseLinear(std::move(points));
-}
-
 int nyquist_iterations(const TableAxes& axes, const std::array<double, 3>& scalars) {
   const auto [a, b] = parabola(scalars);
   const double fastest = std::max(std::abs(b), std::abs(2 * a + b)) * steps_of_8_bits / (axes.high - axes.low);

@@ -63,9 +63,6 @@ class SecondOrderSlabs {
   std::int64_t evaluations_ = 0;
 };
 
-/// A transfer function that is constant outside [low, high]: what a scalar clamped to it sees.
-PiecewiseLinear clamped(const PiecewiseLinear& transfer, double low, double high);
-
 /// The table of all slabs. Throws InputError as Table3 and SecondOrderSlabs do. Where `is_linear_between_entries`
 /// allows it, iterations and exact slabs of associated emission go by the kernels of fast_second_order.hpp, in
 /// binary32: errors of some 1e-6.

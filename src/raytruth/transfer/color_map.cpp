@@ -13,7 +13,6 @@ namespace raytruth {
 namespace {
 
 constexpr int samples_of_space = 1024;  // intervals
-constexpr int intervals_per_opacity_interval = 1024;
 
 // --- Colour spaces ---
 
@@ -166,19 +165,11 @@ Value limit_at(const std::vector<Keyed<Value>>& keys, double s, Side side, const
 /// The scalars between which both functions are linear, after sampling.
 std::vector<double> knots_of(const ColorMap& map) {
   std::vector<double> knots;
-  const auto divide = [&knots](double low, double high, int intervals) {
-    for (int i = 1; i < intervals; ++i) knots.push_back(std::lerp(low, high, static_cast<double>(i) / intervals));
-  };
   for (const auto& key : map.colors) knots.push_back(key.s);
   if (map.space != ColorSpace::rgb && map.space != ColorSpace::step)
-    divide(map.colors.front().s, map.colors.back().s, samples_of_space);
-  for (std::size_t i = 0; i < map.opacities.size(); ++i) {
-    const auto& key = map.opacities[i];
-    knots.push_back(key.s);
-    if (i == 0) continue;
-    const auto& before = map.opacities[i - 1];
-    if (before.s < key.s && before.value != key.value) divide(before.s, key.s, intervals_per_opacity_interval);
-  }
+    for (int i = 1; i < samples_of_space; ++i)
+      knots.push_back(std::lerp(map.colors.front().s, map.colors.back().s, static_cast<double>(i) / samples_of_space));
+  for (const auto& key : map.opacities) knots.push_back(key.s);
   std::sort(knots.begin(), knots.end());
   knots.erase(std::unique(knots.begin(), knots.end()), knots.end());
   return knots;
@@ -216,22 +207,20 @@ PiecewiseLinear transfer_of(const ColorMap& map, double unit_length) {
   if (!(unit_length > 0) || !std::isfinite(unit_length))
     throw InputError(fmt::format("found unit_length {}; a finite number > 0 is allowed", unit_length));
 
-  const auto optics_at = [&](double s, Side side) -> Optics {
-    const double opacity =
-        limit_at(map.opacities, s, side, [](double a, double b, double x) { return std::lerp(a, b, x); });
-    return {-std::log1p(-std::min(opacity, largest_opacity)) / unit_length,
+  const auto point_at = [&](double s, Side side) -> OpacityPoint {
+    return {s, limit_at(map.opacities, s, side, [](double a, double b, double x) { return std::lerp(a, b, x); }),
             limit_at(map.colors, s, side, [&map](const Vector3<double>& a, const Vector3<double>& b, double x) {
               return color_between(map.space, a, b, x);
             })};
   };
-  std::vector<TransferPoint> points;
+  std::vector<OpacityPoint> points;
   for (const double s : knots_of(map)) {
-    const Optics left = optics_at(s, Side::left);
-    const Optics right = optics_at(s, Side::right);
-    points.push_back({s, left});
-    if (left.extinction != right.extinction || (left.color != right.color).any()) points.push_back({s, right});
+    const OpacityPoint left = point_at(s, Side::left);
+    const OpacityPoint right = point_at(s, Side::right);
+    points.push_back(left);
+    if (left.opacity != right.opacity || (left.color != right.color).any()) points.push_back(right);
   }
-  return PiecewiseLinear(std::move(points));
+  return from_opacity(points, unit_length);
 }
 
 }  // namespace raytruth

@@ -36,11 +36,10 @@ struct ColorMap {
 /// The colour between two others, x = 0 ... 1 from `a` to `b`; channels of [0, 1] stay in it.
 Vector3<double> color_between(ColorSpace space, const Vector3<double>& a, const Vector3<double>& b, double x);
 
-/// The transfer function of a colour map whose opacities are those of a stretch of `unit_length`. In the spaces other
-/// than rgb and step the colours are sampled at 1025 equally spaced scalars; an interval of opacities becomes 1024
-/// linear ones, as `from_opacity` makes them, but where the opacity is constant. Opacities above `largest_opacity` are
-/// clamped. Beyond both ends colour and opacity are constant. Throws InputError unless both lists have items, sorted by
-/// s, at most two at one s, finite, opacities and channels in [0, 1], and unit_length > 0.
+/// The transfer function of a colour map whose opacities are those of a length `unit_length`, linear between points. In
+/// the spaces other than rgb and step the colours are sampled at 1025 equally spaced scalars. Beyond both ends colour
+/// and opacity are constant. Throws InputError unless both lists have items, sorted by s, at most two at one s, finite,
+/// opacities and channels in [0, 1], and unit_length > 0.
 PiecewiseLinear transfer_of(const ColorMap& map, double unit_length);
 
 }  // namespace raytruth

@@ -72,7 +72,7 @@ std::span<const TransferFileFormat> transfer_file_formats() {
 }
 
 FileTransfer read_transfer_file(const TransferFileRequest& request, const Grid& grid,
-                                std::vector<std::string>& warnings) {
+                                std::vector<std::string>& /*warnings*/) {
   const std::string file = request.file.string();
   FileMap map = read_map(request);
   if (map.map.colors.empty()) refuse(file, "no colours", "one or more");
@@ -95,10 +95,6 @@ FileTransfer read_transfer_file(const TransferFileRequest& request, const Grid& 
     stretch(map, to, file);
     scalars = fmt::format("those of the file stretched from {} to {}", to[0], to[1]);
   }
-  const auto clamped = std::count_if(map.map.opacities.begin(), map.map.opacities.end(),
-                                     [](const auto& key) { return key.value > largest_opacity; });
-  if (clamped > 0)
-    warnings.push_back(fmt::format("warning: {}: {} opacities above 1 - 2^-12 are clamped to it", file, clamped));
   const double unit_length = request.unit_length.value_or(length_of(map.unit, grid));
   Json description{{"file", request.file.filename().string()}, {"format", map.format}};
   if (!map.name.empty()) description["preset"] = map.name;

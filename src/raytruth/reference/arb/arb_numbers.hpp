@@ -92,6 +92,7 @@ class Ball {
   friend bool operator<=(const Ball& a, const Ball& b) { return arb_le(a.x_, b.x_) != 0; }
 
   friend Ball exp(const Ball& a) { return make(arb_exp, a); }
+  friend Ball log(const Ball& a) { return make(arb_log, a); }
   friend Ball expm1(const Ball& a) { return make(arb_expm1, a); }
   friend Ball sqrt(const Ball& a) { return make(arb_sqrt, a); }
   friend Ball min(const Ball& a, const Ball& b) { return make(arb_min, a, b); }

@@ -28,6 +28,7 @@ class Series {
 
   friend Series sin(const Series& a) { return a.mapped(arb_poly_sin_series); }
   friend Series cos(const Series& a) { return a.mapped(arb_poly_cos_series); }
+  friend Series log(const Series& a) { return a.mapped(arb_poly_log_series); }
   friend Series exp(const Series& a) { return a.mapped(arb_poly_exp_series); }
 
  private:

@@ -54,14 +54,15 @@ std::optional<Ball> zero_of(const Function& f, const Polynomial& slope, int dire
 
 }  // namespace
 
-PointsCut::PointsCut(const PiecewiseLinear& transfer) {
+PointsCut::PointsCut(const PiecewiseLinear& transfer) : unit_length_(transfer.unit_length()) {
   const auto& points = transfer.points();
-  intervals_.push_back({points.front().optics, points.front().optics});
+  const auto opacity = [&](std::size_t i) { return transfer.is_linear_in_opacity() ? transfer.opacities()[i] : 0; };
+  intervals_.push_back({points.front().optics, points.front().optics, opacity(0), opacity(0)});
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i + 1 < points.size() && points[i + 1].s == points[i].s) continue;
-    const Optics& behind = points[i].optics;
+    const std::size_t next = std::min(i + 1, points.size() - 1);
     points_.push_back(points[i].s);
-    intervals_.push_back({behind, i + 1 < points.size() ? points[i + 1].optics : behind});
+    intervals_.push_back({points[i].optics, points[next].optics, opacity(i), opacity(next)});
   }
 }
 
@@ -173,7 +174,8 @@ void PointsCut::cut_monotone(const BallPiece& piece, const Ball& begin, const Ba
 
 BallStretch PointsCut::stretch_in(std::size_t interval, const BallPiece& piece, const Ball& begin,
                                   const Ball& end) const {
-  const auto& [a, b] = intervals_[interval];
+  const Optics& a = intervals_[interval].begin;
+  const Optics& b = intervals_[interval].end;
   BallStretch stretch{.length = piece.length * (end - begin),
                       .extinction = a.extinction,
                       .weight = 0.0,
@@ -194,13 +196,23 @@ BallStretch PointsCut::stretch_across(const BallPiece& piece, const Ball& begin,
   const Ball s = piece.signal(hull(begin, end));
   const Ball low = s.lower();
   const Ball high = s.upper();
+  const Ball length = piece.length * (end - begin);
   Ball extinction;
+  Ball most_depth;
+  // Where 1 - a may vanish the mean of -ln(1 - a) is still below 2048, on 2^-110 of a piece and for degrees up to 9.
+  const auto depth_of = [&](const Interval& interval, const Ball& weight) -> Ball {
+    if (interval.is_opaque()) return opaque_depth;
+    const Ball clear = blend(1 - interval.opacity_begin, 1 - interval.opacity_end, weight).lower();
+    const Ball most = clear.sign() > 0 ? max(0.0, -log(clear)) : Ball(2048.0);
+    return length / Ball(unit_length_) * most;
+  };
   Color color;
   std::size_t i = points_below(low);
   // From a point's own value on downwards the left-hand value of a jump counts too.
   if (i > 0 && low <= Ball(points_[i - 1])) --i;
   for (bool is_first = true;; is_first = false, ++i) {
-    const auto& [a, b] = intervals_[i];
+    const Optics& a = intervals_[i].begin;
+    const Optics& b = intervals_[i].end;
     Ball weight;
     if (i > 0 && i < points_.size()) {
       const Ball p = points_[i - 1];
@@ -209,15 +221,95 @@ BallStretch PointsCut::stretch_across(const BallPiece& piece, const Ball& begin,
     }
     const auto extend = [is_first](Ball& sum, const Ball& value) { sum = is_first ? value : hull(sum, value); };
     extend(extinction, blend(a.extinction, b.extinction, weight));
+    if (unit_length_ > 0) most_depth = max(most_depth, depth_of(intervals_[i], weight));
     for (Eigen::Index k = 0; k < 3; ++k)
       extend(color[static_cast<std::size_t>(k)], blend(a.color[k], b.color[k], weight));
     if (i == points_.size() || high < Ball(points_[i])) break;
   }
-  return {.length = piece.length * (end - begin),
-          .extinction = extinction,
-          .weight = 0.0,
-          .color = color,
-          .color_change = {}};
+  BallStretch stretch{.length = length, .extinction = extinction, .weight = 0.0, .color = color, .color_change = {}};
+  if (unit_length_ > 0) stretch.depth = hull(0.0, most_depth);
+  return stretch;
+}
+
+/// The stretch on which the ray ends: the colour is that at its beginning, whatever little shines in a gap before.
+void PointsCut::visit_opaque(std::size_t interval, const BallPiece& piece, const Ball& begin, const Ball& end,
+                             const Visit& visit) const {
+  const Ball little = 0x1p-80;
+  BallStretch stretch = stretch_in(interval, piece, begin, end);
+  const Ball weight = stretch.weight(Ball(0.0));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Ball color = stretch.color[i] + stretch.color_change[i] * weight;
+    stretch.color[i] = widened(color, little * (color.magnitude() + stretch.color_change[i].magnitude()));
+  }
+  stretch.color_change = {};
+  stretch.depth = opaque_depth;
+  visit(stretch);
+}
+
+void PointsCut::visit_opacity(std::size_t interval, const BallPiece& piece, const Ball& begin, const Ball& end,
+                              const Visit& visit) const {
+  const Ball largest_remainder = 0x1p-72;
+  const Ball narrowest = 0x1p-64;
+  const auto& [a, b, opacity_begin, opacity_end] = intervals_[interval];
+  const Ball width = Ball(points_[interval]) - Ball(points_[interval - 1]);
+  const Ball slope = (Ball(opacity_begin) - Ball(opacity_end)) / width;
+  // 1 - a, exact but for the balls' rounding. In the coordinate of the part, for powers of another would hide by how
+  // little it varies; of 1 - a and not of the signal, so that what vanishes stays exact.
+  const Polynomial signal = piece.signal - Polynomial(points_[interval - 1]);
+  const Polynomial clear = (Polynomial(Ball(1.0) - Ball(opacity_begin)) + slope * signal).restricted(begin, end);
+  const auto is_zero = [](const Ball& x) { return arb_is_zero(x.get()) != 0; };
+  bool vanishes = true;
+  for (slong k = 0; k < clear.size(); ++k) vanishes = vanishes && is_zero(clear.coefficient(k));
+  if (vanishes) {
+    visit_opaque(interval, piece, begin, end, visit);
+    return;
+  }
+  const auto extinction = [&](const Series& x) {
+    Series series(Polynomial(), x.order());
+    for (slong k = clear.size() - 1; k >= 0; --k) series = clear.coefficient(k) + series * x;
+    return Ball(-1.0) / Ball(unit_length_) * log(series);
+  };
+  BallStretch stretch{.length = piece.length * (end - begin),
+                      .extinction = {},
+                      .weight = Ball(1.0) / width * signal.restricted(begin, end),
+                      .color = balls(a.color),
+                      .color_change = {}};
+  for (std::size_t i = 0; i < 3; ++i)
+    stretch.color_change[i] = Ball(b.color[static_cast<Eigen::Index>(i)]) - Ball(a.color[static_cast<Eigen::Index>(i)]);
+  if (auto model = taylor_model(extinction, 0.0, 1.0, largest_remainder / Ball(unit_length_))) {
+    stretch.extinction = std::move(*model);
+    visit(stretch);
+    return;
+  }
+  const bool is_noise = clear.magnitude() <= Ball(8.0) * clear.error();
+  if (end - begin <= narrowest || is_noise) {
+    const Ball most = max(0.0, min(1.0, clear(hull(Ball(0.0), Ball(1.0))).upper()));
+    const Ball seen = max(clear(Ball(0.0)).lower(), clear(Ball(1.0)).lower());
+    const Ball units = stretch.length / Ball(unit_length_);
+    const Ball least_depth = most.sign() > 0 ? Ball(max(0.0, -log(most) * units)) : Ball(opaque_depth);
+    const Ball degree = static_cast<double>(clear.size() - 1);
+    const Ball most_depth =
+        seen.sign() > 0 ? units * (max(0.0, -log(seen)) + Ball(1.2785) * degree) : Ball(opaque_depth);
+    stretch.depth = hull(least_depth, max(least_depth, most_depth));
+    visit(stretch);
+    return;
+  }
+  const Ball middle = ((begin + end) * 0.5).middle();
+  visit_opacity(interval, piece, begin, middle, visit);
+  visit_opacity(interval, piece, middle, end, visit);
+}
+
+void PointsCut::visit_part(const std::optional<std::size_t>& interval, const BallPiece& piece, const Ball& begin,
+                           const Ball& end, const Visit& visit) const {
+  if (!interval) {
+    visit(stretch_across(piece, begin, end));
+  } else if (intervals_[*interval].is_opaque()) {
+    visit_opaque(*interval, piece, begin, end, visit);
+  } else if (intervals_[*interval].opacity_begin != intervals_[*interval].opacity_end) {
+    visit_opacity(*interval, piece, begin, end, visit);
+  } else {
+    visit(stretch_in(*interval, piece, begin, end));
+  }
 }
 
 void PointsCut::operator()(const BallPiece& piece, const Visit& visit) const {
@@ -225,6 +317,7 @@ void PointsCut::operator()(const BallPiece& piece, const Visit& visit) const {
   find_parts(piece, 0.0, 1.0, piece.control, parts);
   // What a chain's rounding leaves behind the last coefficient.
   if (!(piece.end <= Ball(1.0))) parts.push_back({1.0, max(1.0, piece.end), {}});
+  const auto is_opaque = [this](const Part& part) { return part.interval && intervals_[*part.interval].is_opaque(); };
   for (std::size_t i = 0; i < parts.size();) {
     const std::size_t first = i;
     while (++i < parts.size() && parts[i].interval == parts[first].interval) {
@@ -232,8 +325,14 @@ void PointsCut::operator()(const BallPiece& piece, const Visit& visit) const {
     const Ball begin = min(parts[first].begin, piece.end);
     const Ball end = i == parts.size() ? piece.end : min(parts[i - 1].end, piece.end);
     if (end <= begin) continue;
-    const auto& interval = parts[first].interval;
-    visit(interval ? stretch_in(*interval, piece, begin, end) : stretch_across(piece, begin, end));
+    // A ray that becomes opaque somewhere in a gap does so at its front, as far as any ball can tell.
+    const bool ends_here = !parts[first].interval && i < parts.size() && is_opaque(parts[i]) &&
+                           parts[i].begin < min(parts[i].end, piece.end);
+    if (ends_here) {
+      visit_opaque(*parts[i].interval, piece, begin, end, visit);
+      return;
+    }
+    visit_part(parts[first].interval, piece, begin, end, visit);
   }
 }
 

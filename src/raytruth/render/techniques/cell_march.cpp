@@ -269,11 +269,14 @@ PixelRendererFactory prepare(const PreparedScene& prepared) {
 }  // namespace
 
 extern const Technique cell_march_pixels;
-const Technique cell_march_pixels{
-    .name = "cell_march",
-    .summary = "the cubic of every cell, from voxels in binary32",
-    .applies = [](const Scene& scene) { return scene.scheme == "cell_cubic" && scene.field == FieldKind::trilinear; },
-    .refuse = [](const PreparedScene& /*prepared*/) {},
-    .prepare = prepare};
+const Technique cell_march_pixels{.name = "cell_march",
+                                  .summary = "the cubic of every cell, from voxels in binary32",
+                                  .applies =
+                                      [](const Scene& scene) {
+                                        return scene.scheme == "cell_cubic" && scene.field == FieldKind::trilinear &&
+                                               !scene.transfer.is_linear_in_opacity();
+                                      },
+                                  .refuse = [](const PreparedScene& /*prepared*/) {},
+                                  .prepare = prepare};
 
 }  // namespace raytruth

@@ -27,6 +27,8 @@ namespace raytruth {
 /// over; others are cut where they cross the transfer function's points. Parts that are not deep are integrated side by
 /// side by a rule of Gauss (CellKernels), all others by RayIntegral. A ray ends where less than 2^-30 of the light
 /// behind it would be seen. Reads what it is made of; one `CellRay` per thread.
+///
+/// Only for transfer functions that are linear in extinction; the scheme itself (scheme_pixels) does the others.
 class CellMarch {
  public:
   /// Throws InputError for voxels beyond the range of binary32, and as RayIntegral does.

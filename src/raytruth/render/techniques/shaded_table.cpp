@@ -46,9 +46,10 @@ ShadedTable::ShadedTable(const Scene& scene, const TableAxes& axes) : axes_(axes
 }
 
 void ShadedTable::integrate_entries(const Scene& scene) {
+  const PiecewiseLinear transfer = linear_in_extinction(scene.transfer);
   tbb::parallel_for(std::size_t{0}, axes_.size, [&](std::size_t back) {
     for (std::size_t front = 0; front < axes_.size; ++front) {
-      const SlabOptics optics(scene.transfer, axes_.scalar(front), axes_.scalar(back), axes_.length);
+      const SlabOptics optics(transfer, axes_.scalar(front), axes_.scalar(back), axes_.length);
       const SlabMoments moments = slab_moments(optics, scene.emission);
       Entry& entry = at(front, back);
       for (Eigen::Index k = 0; k < powers; ++k) {
