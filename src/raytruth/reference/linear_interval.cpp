@@ -103,6 +103,55 @@ void set_opacity_end(IntervalEnd& end, const OpacitySide& here, const OpacitySid
   }
 }
 
+/// Interval i, between knots i - 1 and i. Half-lines get the width of the whole, `span`, so that x and the tests on it
+/// are of a reasonable size.
+LinearInterval interval_between(const std::vector<Knot>& knots, std::size_t i, double span) {
+  const bool is_last = i == knots.size();
+  LinearInterval interval;
+  if (i == 0) {
+    const Knot& first = knots.front();
+    interval.scale = 1 / span;
+    interval.origin = first.s;
+    interval.offset = 1;
+    interval.bottom = interval.origin - span;
+    interval.top = interval.origin;
+    interval.at_0 = interval.at_1 = first.below;
+    interval.opacity.fill(first.opacity_below);
+  } else {
+    const Knot& low = knots[i - 1];
+    interval.scale = 1 / (is_last ? span : knots[i].s - low.s);
+    interval.origin = interval.bottom = low.s;
+    interval.top = is_last ? interval.origin + span : knots[i].s;
+    interval.at_0 = low.above;
+    interval.at_1 = is_last ? low.above : knots[i].below;
+    interval.opacity = {low.opacity_above, is_last ? low.opacity_above : knots[i].opacity_below};
+  }
+  interval.is_linear =
+      interval.at_0.extinction != interval.at_1.extinction || (interval.at_0.color != interval.at_1.color).any();
+  interval.clear = {1 - interval.opacity[0], 1 - interval.opacity[1]};
+  interval.is_opacity = interval.opacity[0] != interval.opacity[1];
+  interval.is_opaque = interval.opacity[0] == 1 && interval.opacity[1] == 1;
+  return interval;
+}
+
+/// The end of an interval beyond which `neighbour` is, a half-line if it `is_half_line`; `end` is 0 or 1, `ratio` the
+/// neighbour's width over the interval's.
+IntervalEnd end_towards(const LinearInterval& interval, std::size_t end, const LinearInterval& neighbour,
+                        bool is_half_line, double ratio, double units) {
+  const auto optics = [](const LinearInterval& of, std::size_t at) -> const Optics& {
+    return at == 0 ? of.at_0 : of.at_1;
+  };
+  const std::size_t other = 1 - end;
+  IntervalEnd result = end_between(optics(interval, other), optics(interval, end), optics(neighbour, other),
+                                   optics(neighbour, end), ratio);
+  if (is_half_line) result.reach = HUGE_VAL;
+  if (interval.is_opacity || neighbour.is_opacity || interval.is_opaque || neighbour.is_opaque)
+    set_opacity_end(result, opacity_side(interval.clear[end], interval.clear[other], 1),
+                    opacity_side(neighbour.clear[other], neighbour.clear[end], ratio), units);
+  result.is_opaque_beyond = neighbour.is_opaque;
+  return result;
+}
+
 }  // namespace
 
 LinearIntervals::LinearIntervals(const PiecewiseLinear& transfer) {
@@ -117,33 +166,9 @@ LinearIntervals::LinearIntervals(const PiecewiseLinear& transfer) {
     most_extinction_ = std::max({most_extinction_, knot.below.extinction, knot.above.extinction});
     most_color_ = std::max({most_color_, knot.below.color.maxCoeff(), knot.above.color.maxCoeff()});
   }
-  // Half-lines get the width of the whole, so that x and the tests on it are of a reasonable size.
   const double span = count > 1 ? knots.back().s - knots.front().s : 1;
   const auto width = [&](std::size_t i) { return i == 0 || i == count ? span : knots[i].s - knots[i - 1].s; };
-  for (std::size_t i = 0; i <= count; ++i) {
-    LinearInterval interval;
-    interval.scale = 1 / width(i);
-    if (i == 0) {
-      interval.origin = knots.front().s;
-      interval.offset = 1;
-      interval.bottom = interval.origin - span;
-      interval.top = interval.origin;
-      interval.at_0 = interval.at_1 = knots.front().below;
-      interval.opacity.fill(knots.front().opacity_below);
-    } else {
-      interval.origin = interval.bottom = knots[i - 1].s;
-      interval.top = i < count ? knots[i].s : interval.origin + span;
-      interval.at_0 = knots[i - 1].above;
-      interval.at_1 = i < count ? knots[i].below : knots[i - 1].above;
-      interval.opacity = {knots[i - 1].opacity_above, i < count ? knots[i].opacity_below : knots[i - 1].opacity_above};
-    }
-    interval.is_linear =
-        interval.at_0.extinction != interval.at_1.extinction || (interval.at_0.color != interval.at_1.color).any();
-    interval.clear = {1 - interval.opacity[0], 1 - interval.opacity[1]};
-    interval.is_opacity = interval.opacity[0] != interval.opacity[1];
-    interval.is_opaque = interval.opacity[0] == 1 && interval.opacity[1] == 1;
-    intervals_.push_back(interval);
-  }
+  for (std::size_t i = 0; i <= count; ++i) intervals_.push_back(interval_between(knots, i, span));
   for (std::size_t i = 0; i <= count; ++i) {
     LinearInterval& interval = intervals_[i];
     const auto largest_optics = [&](const Optics& optics) {
@@ -154,24 +179,13 @@ LinearIntervals::LinearIntervals(const PiecewiseLinear& transfer) {
     largest_optics(interval.at_1);
     interval.end_0.reach = interval.end_1.reach = HUGE_VAL;
     if (i > 0) {
-      const LinearInterval& below = intervals_[i - 1];
-      interval.end_0 = end_between(interval.at_1, interval.at_0, below.at_1, below.at_0, width(i - 1) / width(i));
-      if (i == 1) interval.end_0.reach = HUGE_VAL;
-      if (interval.is_opacity || below.is_opacity || interval.is_opaque || below.is_opaque)
-        set_opacity_end(interval.end_0, opacity_side(interval.clear[0], interval.clear[1], 1),
-                        opacity_side(below.clear[1], below.clear[0], width(i - 1) / width(i)), units_per_length_);
-      interval.end_0.is_opaque_beyond = below.is_opaque;
-      largest_optics(below.at_1);
+      interval.end_0 = end_towards(interval, 0, intervals_[i - 1], i == 1, width(i - 1) / width(i), units_per_length_);
+      largest_optics(intervals_[i - 1].at_1);
     }
     if (i < count) {
-      const LinearInterval& above = intervals_[i + 1];
-      interval.end_1 = end_between(interval.at_0, interval.at_1, above.at_0, above.at_1, width(i + 1) / width(i));
-      if (i + 1 == count) interval.end_1.reach = HUGE_VAL;
-      if (interval.is_opacity || above.is_opacity || interval.is_opaque || above.is_opaque)
-        set_opacity_end(interval.end_1, opacity_side(interval.clear[1], interval.clear[0], 1),
-                        opacity_side(above.clear[0], above.clear[1], width(i + 1) / width(i)), units_per_length_);
-      interval.end_1.is_opaque_beyond = above.is_opaque;
-      largest_optics(above.at_0);
+      interval.end_1 =
+          end_towards(interval, 1, intervals_[i + 1], i + 1 == count, width(i + 1) / width(i), units_per_length_);
+      largest_optics(intervals_[i + 1].at_0);
     }
     interval.typical_extinction = interval.most_extinction;
     if (units_per_length_ > 0) {

@@ -137,13 +137,13 @@ template <int Degree>
 struct Contact {
   const Piece<Degree>& piece;
   PieceError error;
-  std::size_t piece_index;
-  std::size_t interval;
-  bool is_at_top;         ///< x is 1 there, else 0
-  bool is_inside;         ///< it certainly does not go beyond
-  double slope;           ///< of 1 - a, by the scalar's distance from there
-  double width;           ///< of the interval
-  double distance_error;  ///< of the scalar
+  std::size_t piece_index = 0;
+  std::size_t interval = 0;
+  bool is_at_top = false;     ///< x is 1 there, else 0
+  bool is_inside = false;     ///< it certainly does not go beyond
+  double slope = 0;           ///< of 1 - a, by the scalar's distance from there
+  double width = 0;           ///< of the interval
+  double distance_error = 0;  ///< of the scalar
 };
 
 /// Some of it: in the piece's unit coordinate, and the scalar's distance.
