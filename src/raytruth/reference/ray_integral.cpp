@@ -257,7 +257,7 @@ struct RayIntegral::Parts {
                        Buffers<Degree>& buffers) const;
   template <int Degree>
   void append_opaque(std::size_t interval, const NormalisedStretches<Degree>& normalised, std::size_t lane,
-                     bool is_certain, Buffers<Degree>& buffers) const;
+                     bool is_certain, bool is_entered, Buffers<Degree>& buffers) const;
   template <int Degree>
   void find_integrals(Buffers<Degree>& buffers) const;
   template <int Degree>
@@ -360,7 +360,7 @@ void RayIntegral::Parts::accept_or_halve(const Piece<Degree>& piece, const Piece
         1.0, length * std::max(ends[0].share, ends[1].share) * most_mean_of_opaque * intervals_.units_per_length());
     color_error = lost * std::max(ends[0].color, ends[1].color);
     depth_error = 0;
-    append_opaque(stretch.interval, normalised, lane, is_settled, buffers);
+    append_opaque(stretch.interval, normalised, lane, is_settled, stretch.begin > 0, buffers);
   } else if (interval.is_opacity && (interval.clear[0] == 0 || interval.clear[1] == 0)) {
     append_contact(piece, error, stretch, budget, buffers);
   } else if (interval.is_opacity) {
@@ -536,7 +536,7 @@ void RayIntegral::Parts::append_neighbour(const Contact<Degree>& contact, const 
               intervals_[neighbour]);
   const auto normalised = kernels<Degree>().normalise(eight);
   if (intervals_[neighbour].is_opaque)
-    append_opaque(neighbour, normalised, 0, true, buffers);
+    append_opaque(neighbour, normalised, 0, true, true, buffers);
   else
     accept_or_halve(contact.piece, contact.error, beyond, normalised, 0, budget, buffers);
 }
@@ -561,13 +561,25 @@ void RayIntegral::Parts::append_touching(const OpacityPiece<Degree>& piece, cons
   if (!is_known || (end.is_opaque_beyond && !contact.is_inside)) buffers.doubts.back() = Doubt::may_end;
 }
 
-/// Appends what is opaque: the ray ends at its beginning, if it `is_certain` that it is there.
+/// Appends what is opaque: the ray ends at its beginning, if it `is_certain` that it is there. Inside a piece, where it
+/// `is_entered`, that is at a knot, whatever the rounded place of the crossing makes of the scalar.
 template <int Degree>
 void RayIntegral::Parts::append_opaque(std::size_t interval, const NormalisedStretches<Degree>& normalised,
-                                       std::size_t lane, bool is_certain, Buffers<Degree>& buffers) const {
-  const bool has_color = intervals_[interval].is_linear;
-  const double x = has_color ? normalised.x[0][lane] : 0;
-  const double x_error = has_color ? normalised.x_error[lane] : 0;
+                                       std::size_t lane, bool is_certain, bool is_entered,
+                                       Buffers<Degree>& buffers) const {
+  double x = 0;
+  double x_error = 0;
+  if (intervals_[interval].is_linear) {
+    x = normalised.x[0][lane];
+    x_error = normalised.x_error[lane];
+    const double knot = x < 0.5 ? 0 : 1;
+    const double distance = std::abs(x - knot);
+    if (distance < brief) {
+      // The ray may have come through the knot a moment before.
+      x_error = is_certain && is_entered ? 0 : x_error + distance;
+      if (is_certain && is_entered) x = knot;
+    }
+  }
   const bool is_associated = emission_ == Emission::associated;
   append({.weight_0 = is_associated ? 1 - x : 0,
           .weight_1 = is_associated ? x : 0,
