@@ -64,9 +64,12 @@ bool is_given_up(const LinearPiece<Degree>& /*piece*/, const PieceIntegral<>& bo
 
 template <int Degree>
 bool is_given_up(const OpacityPiece<Degree>& piece, const PieceIntegral<>& bound, int level) {
-  // A shallow piece on which 1 - a hardly varies needs no halves; its numbers are out of range.
+  // A shallow piece on which 1 - a hardly varies needs few halves, if its degree is high; or its numbers are out of
+  // range.
+  constexpr int most_levels_of_plain = 10;
   const auto [least, most] = std::minmax_element(piece.clear.begin(), piece.clear.end());
-  return is_undividable(piece, level) || (bound.depth + bound.depth_error < 1 && *most < 1.25 * *least);
+  return is_undividable(piece, level) ||
+         (level >= most_levels_of_plain && bound.depth + bound.depth_error < 1 && *most < 1.25 * *least);
 }
 
 /// What is known of an opacity piece without any quadrature.

@@ -360,7 +360,8 @@ void RayIntegral::Parts::accept_or_halve(const Piece<Degree>& piece, const Piece
         1.0, length * std::max(ends[0].share, ends[1].share) * most_mean_of_opaque * intervals_.units_per_length());
     color_error = lost * std::max(ends[0].color, ends[1].color);
     depth_error = 0;
-    append_opaque(stretch.interval, normalised, lane, is_settled, stretch.begin > 0, buffers);
+    append_opaque(stretch.interval, normalised, lane, is_settled || std::max(ends[0].share, ends[1].share) < 0.25,
+                  stretch.begin > 0, buffers);
   } else if (interval.is_opacity && (interval.clear[0] == 0 || interval.clear[1] == 0)) {
     append_contact(piece, error, stretch, budget, buffers);
   } else if (interval.is_opacity) {
@@ -650,9 +651,9 @@ void RayIntegral::Parts::integrate_pieces(Buffers<Degree>& buffers, Sum& sum) co
       if (buffers.doubts.empty()) continue;
       const Doubt doubt = buffers.doubts[first + lane];
       const double most_seen = std::min(1.0, transmittance + drift);
-      if (!interval.is_opaque) sum.doubt = std::max(sum.doubt, sum.pending);
+      if (!interval.is_opaque && doubt != Doubt::may_end) sum.doubt = std::max(sum.doubt, sum.pending);
       if (doubt == Doubt::may_go_on) sum.doubt = std::max(sum.doubt, most_seen);
-      sum.pending = doubt == Doubt::may_end ? most_seen : 0;
+      sum.pending = doubt == Doubt::may_end ? std::max(sum.pending, most_seen) : 0;
     }
   }
   sum.pieces += count;
