@@ -11,7 +11,7 @@ namespace raytruth {
 /// are known less well than was asked for, what was asked for, which pixel is known least, and what that means.
 nlohmann::ordered_json radius_json(const Rendering& rendering);
 
-/// Of each pixel's numbers as a file in binary32 holds them: the radius and what rounding them adds, rounded up.
+/// The radius of each pixel's numbers as a file in binary32 holds them: what rounding them adds is in it, rounded up.
 std::vector<double> radii_in_binary32(const Rendering& rendering);
 
 }  // namespace raytruth

@@ -15,7 +15,7 @@ namespace raytruth {
 /// as along an axis through the middle of an image.
 class CameraRounding {
  public:
-  /// Of a camera and spacing that CameraView does not refuse, and a grid of this size.
+  /// Takes a camera and spacing that CameraView does not refuse, and the size of the grid.
   CameraRounding(const Camera& camera, const std::array<double, 3>& spacing, const std::array<std::int64_t, 3>& size);
   ~CameraRounding();
   CameraRounding(const CameraRounding&) = delete;
