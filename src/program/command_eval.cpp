@@ -70,10 +70,14 @@ std::function<int()> describe(CommandOptions& add) {
 }  // namespace
 
 extern const Command eval_command;
-const Command eval_command{.name = "eval",
-                           .summary = "Evaluate one ray, slab or scene, or an array of them, by the schemes they name",
-                           .example = "raytruth eval ray.json",
-                           .notes = "",
-                           .describe = describe};
+const Command eval_command{
+    .name = "eval",
+    .summary = "Evaluate one ray, slab or scene, or an array of them, by the schemes they name",
+    .example = "raytruth eval ray.json",
+    .notes =
+        "The reference of rays, of slabs and of scenes without light is certified: `error_bound` is "
+        "proven. That of lit\n"
+        "scenes is an estimate: `measured_radius`.",
+    .describe = describe};
 
 }  // namespace raytruth

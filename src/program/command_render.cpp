@@ -1,6 +1,9 @@
 #include "experiments/output.hpp"
 #include "program/command.hpp"
 #include "program/progress_bar.hpp"
+#include "raytruth/core/error.hpp"
+#include "raytruth/core/one_line.hpp"
+#include "raytruth/documents/rendering_json.hpp"
 #include "raytruth/documents/scene_document.hpp"
 #include "raytruth/images/image_file.hpp"
 #include "raytruth/render/renderer.hpp"
@@ -22,6 +25,7 @@ struct RenderOptions {
   std::string file;  ///< of the image
   int threads = 0;
   bool is_linear = false;              ///< 8 bits are linear light, not sRGB
+  bool is_binary64 = false;            ///< a .npy holds binary64
   std::optional<std::string> opacity;  ///< a transfer function's file, whose opacities are taken
   bool ignores_gradient_opacity = false;
   std::string data;
@@ -39,11 +43,42 @@ Rendering render(const Renderer& renderer) {
   });
 }
 
+/// The radii of `reference` beside its image: those of the numbers that the file holds. A picture of 8 bits has none.
+void write_radii(const Rendering& rendering, const std::filesystem::path& file, bool is_binary64,
+                 nlohmann::ordered_json& result) {
+  std::filesystem::path radii = file;
+  radii.replace_filename(file.stem().string() + ".radius.npy");
+  result["radius_image"] = radii.filename().string();
+  const bool is_picture = file.extension() == ".png";
+  Rendering stored{.image = rendering.image,
+                   .radii = is_picture || is_binary64 ? rendering.radii : radii_in_binary32(rendering),
+                   .is_certified = rendering.is_certified,
+                   .covers_camera = rendering.covers_camera,
+                   .tolerance = rendering.tolerance,
+                   .not_converged = rendering.not_converged};
+  result.update(radius_json(stored));
+  if (is_picture) {
+    result["bound_holds_for"] =
+        "linear light in binary64, before it is clamped, encoded and rounded to the picture's 8 bits; not for the "
+        "picture";
+  } else {
+    result["bound_holds_for"] = is_binary64 ? "the binary64 numbers in the file"
+                                            : "the binary32 numbers in the file: their rounding is covered";
+    if (!is_binary64)
+      result["radius_before_rounding"] = *std::max_element(rendering.radii.begin(), rendering.radii.end());
+  }
+  write_whole(radii, number_file(stored.radii, rendering.image.size));
+}
+
 int render_scene(const RenderOptions& options) {
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const std::filesystem::path file = options.file;
   const auto transfer = options.is_linear ? Transfer8Bit::linear : Transfer8Bit::srgb;
+  const auto numbers = options.is_binary64 ? NpyNumbers::binary64 : NpyNumbers::binary32;
+  if (options.is_binary64 && file.extension() != ".npy")
+    throw InputError(fmt::format("command line: --binary64: found -o {}; a name that ends in .npy is allowed",
+                                 one_line(options.file)));
   image_file(Image({1, 1}), file.extension().string(), transfer);  // refuses the name before anything is rendered
 
   const JsonReader json = JsonReader::from_file(options.scene);
@@ -52,30 +87,18 @@ int render_scene(const RenderOptions& options) {
                                       .ignores_gradient_opacity = options.ignores_gradient_opacity});
   for (const std::string& warning : scene.warnings) say(warning);
   const auto size = scene.scene.camera.size;
+  scene.scene.covers_camera = true;
   nlohmann::ordered_json result{{"image", file.filename().string()},
                                 {"size", size},
                                 {"scheme", scene.scene.scheme},
                                 {"volume", std::move(scene.volume)},
                                 {"transfer_function", std::move(scene.transfer_function)}};
+  if (!scene.fitted_camera.is_null()) result["fitted_camera"] = scene.fitted_camera;
+  if (!scene.warnings.empty()) result["warnings"] = scene.warnings;
   const Rendering rendering = json.at("scheme").blame_for([&] { return render(Renderer(std::move(scene.scene))); });
   if (file.extension() == ".png") result["encoding"] = options.is_linear ? "linear" : "sRGB";
-  write_whole(file, image_file(rendering.image, file.extension().string(), transfer));
-  if (!rendering.radii.empty()) {
-    std::filesystem::path radii = file;
-    radii.replace_filename(file.stem().string() + ".radius.npy");
-    result["radius_image"] = radii.filename().string();
-    const double radius = *std::max_element(rendering.radii.begin(), rendering.radii.end());
-    if (rendering.is_certified) {
-      result["error_bound"] = radius;
-    } else {
-      result["measured_radius"] = radius;
-      result["radius"] =
-          "sum of the differences of two quadratures (7 and 15 nodes) over all panels of a ray: an "
-          "estimate, not a bound; rounding is left out";
-    }
-    result["not_converged"] = rendering.not_converged;
-    write_whole(radii, number_file(rendering.radii, size));
-  }
+  write_whole(file, image_file(rendering.image, file.extension().string(), transfer, numbers));
+  if (!rendering.radii.empty()) write_radii(rendering, file, options.is_binary64, result);
   print(result.dump(2) + "\n");
   return 0;
 }
@@ -87,6 +110,7 @@ std::function<int()> describe(CommandOptions& add) {
                     "The image: .png (8 bits, over black), .pfm or .npy (linear light, binary32)");
   add.threads(options->threads);
   add.flag("--linear", options->is_linear, "Write linear light into a .png, instead of sRGB");
+  add.flag("--binary64", options->is_binary64, "Write binary64 into a .npy: all digits of a certified image");
   add.text("--opacity", "FILE", options->opacity,
            "Take the opacities of this transfer function, for colour maps without");
   add.flag("--ignore-gradient-opacity", options->ignores_gradient_opacity,
@@ -98,10 +122,20 @@ std::function<int()> describe(CommandOptions& add) {
 }  // namespace
 
 extern const Command render_command;
-const Command render_command{.name = "render",
-                             .summary = "Render a scene, by any scheme or certified",
-                             .example = "raytruth render scene.json -o image.png",
-                             .notes = "",
-                             .describe = describe};
+const Command render_command{
+    .name = "render",
+    .summary = "Render a scene, by any scheme or certified",
+    .example = "raytruth render scene.json -o image.png",
+    .notes =
+        "With the scheme \"reference\" an image of radii is written beside it. Without light it is "
+        "certified: the\n"
+        "radius is proven, for the scene as its numbers say it and the numbers that a .npy or "
+        ".pfm holds; the\n"
+        "rounding of the camera's rays and of binary32 is covered. With light it is an "
+        "estimate: the radius is\n"
+        "measured, not proven, and for rays as rounded to binary64. A .png has no bound. "
+        "Where a scene has no\n"
+        "camera, one is fitted around the volume and stated.",
+    .describe = describe};
 
 }  // namespace raytruth

@@ -62,9 +62,81 @@ class Images(ProgramTest):
             numpy.testing.assert_allclose(pixel, [opacity, opacity / 2, opacity / 4, opacity], rtol=1e-7)
         radii = numpy.load(self.folder / "image.radius.npy")
         self.assertEqual(radii.shape, (1, 2))
-        self.assertLess(radii.max(), 1e-13)
+        self.assertLess(radii.max(), 2**-24)
         self.assertEqual((answer["error_bound"], answer["not_converged"]), (radii.max(), 0))
         self.assertEqual(answer["transfer_function"]["color"], "linear light")
+        self.assertLess(answer["radius_before_rounding"], 1e-13)
+
+    def test_the_bound_is_that_of_the_numbers_in_the_file(self):
+        opacity = 1 - numpy.exp(-2.0)
+        truth = opacity * numpy.array([1, 0.5, 0.25, 1])
+        answer, image = self.render(SCENE, "image.npy", "--binary64")
+        self.assertEqual(image.dtype, numpy.float64)
+        self.assertLess(answer["error_bound"], 1e-13)
+        self.assertLess(abs(image - truth).max(), answer["error_bound"] + 1e-16)
+        for name in ("image.npy", "image.pfm"):
+            answer, _ = self.render(SCENE, name)
+            stored = numpy.load(self.folder / name) if name.endswith("npy") else numpy.frombuffer(
+                (self.folder / name).read_bytes()[12:], "<f4").reshape(1, 2, 3)
+            error = abs(stored.astype(float) - truth[: stored.shape[2]]).max()
+            self.assertGreater(error, 1e-9)
+            self.assertLessEqual(error, answer["error_bound"])
+            self.assertLessEqual(answer["error_bound"], 2**-24)
+            self.assertIn("binary32", answer["bound_holds_for"])
+        answer, _ = self.render(SCENE, "image.png")
+        self.assertIn("not for the picture", answer["bound_holds_for"])
+        self.assert_refused(self.run_program("render", "scene.json", "-o", "i.pfm", "--binary64"), "i.pfm", ".npy")
+
+    def test_radii_cover_the_rounding_of_the_camera(self):
+        """A camera far away, along no axis: rays are rounded by some 1e-13 of a voxel, and the scalar is steep."""
+        scene = {**NOISE, "camera": {**NOISE["camera"], "eye": [3000.1, 2000.3, -2500.7], "fov_y": 0.25}}
+        answer, image = self.render(scene, "image.npy", "--binary64")
+        self.assertGreater(answer["error_bound"], 1e-14)
+        self.assertLess(answer["error_bound"], 1e-9)
+        self.assertIn("covered", answer["bound_of"])
+        self.assertEqual(answer["not_converged"], 0)
+
+    def test_pixels_that_did_not_converge_say_why(self):
+        jump = {"points": [{"s": 0.5, "extinction": 0, "color": [1, 1, 1]}, {"s": 0.5, "extinction": 1e9, "color": [1, 1, 1]}]}
+        scene = {**NOISE, "transfer_function": jump}
+        scene["camera"] = {**NOISE["camera"], "eye": [30.1, 20.2, -25.3]}
+        answer, _ = self.render(scene, "image.npy", "--binary64")
+        radii = numpy.load(self.folder / "image.radius.npy")
+        self.assertEqual(answer["not_converged"], (radii > answer["tolerance"]).sum())
+        if answer["not_converged"]:
+            self.assertIn(f"{answer['not_converged']} of {radii.size} pixels", answer["why_not_converged"])
+
+    def test_a_camera_is_fitted(self):
+        scene = changed(NOISE, "/camera", ...)
+        for spacing in ([1, 1, 1], [0.5, 2, 7]):
+            for size, camera in ((None, ...), ([40, 20], {"size": [40, 20]}), ([20, 60], {"size": [20, 60]})):
+                volume = {"size": [4, 3, 2], "values": [1] * 24, "spacing": spacing}
+                fitted = {**scene, "volume": volume} | ({} if camera is ... else {"camera": camera})
+                answer, image = self.render(fitted)
+                self.assertEqual(answer["size"], size or [512, 512])
+                seen = image[..., 3] > 0
+                self.assertFalse(seen[0].any() or seen[-1].any() or seen[:, 0].any() or seen[:, -1].any())
+                self.assertGreater(seen.mean(), 0.02)
+                # What it states is a scene's camera.
+                _, again = self.render({**fitted, "camera": answer["fitted_camera"]})
+                numpy.testing.assert_array_equal(image, again)
+                self.assertNotIn("warnings", answer)
+        answer = self.json_of("eval", self.write("scene.json", {**scene, "scheme": "order1", "camera": {"size": [8, 8]}}))
+        self.assertEqual(answer["fitted_camera"]["size"], [8, 8])
+
+    def test_what_is_not_seen_is_said(self):
+        points = lambda a, b: {"points": [{"s": a, "extinction": 0, "color": [1, 1, 1]}, {"s": b, "extinction": 1, "color": [1, 1, 1]}]}
+        for words, changes in (
+            ("no ray of the camera meets the volume", {"camera": {**NOISE["camera"], "target": [500, 0, 0]}}),
+            ("clear at every value", {"transfer_function": points(300, 1000)}),
+            ("hardly meets", {"transfer_function": points(-1000, -10)}),
+            ("hardly meets", {"transfer_function": points(-1000, 3000)}),
+        ):
+            answer, _ = self.render({**NOISE, **changes})
+            self.assertEqual(len(answer["warnings"]), 1, answer["warnings"])
+            self.assertIn(words, answer["warnings"][0])
+        answer, _ = self.render(NOISE)
+        self.assertNotIn("warnings", answer)
 
     def test_extinction_and_step_are_per_smallest_spacing(self):
         scene = changed(SCENE, "/volume/spacing", [3, 3, 5])
@@ -115,6 +187,26 @@ class Images(ProgramTest):
             with self.subTest(scheme=scheme, **options):
                 _, image = self.render({**NOISE, "scheme": scheme, **options})
                 self.assertLess(abs(image - truth).max(), near)
+
+    def test_cell_cubic_keeps_voxels_that_binary32_does_not_hold(self):
+        """Labels, seconds since 1970, narrow and wide ranges, numbers beyond binary32: as the reference to binary32."""
+        random = numpy.random.default_rng(2).random(27)
+        for low, width in ((2e7, 2), (1.7e9, 10), (1, 1e-5), (-1000, 1e-3), (0, 1), (0.1, 0.2), (0, 1e100), (2**52, 64), (1e-40, 1e-40)):
+            values = low + width * numpy.round(random * 8) / 8
+            camera = {"eye": [20, 13, -30], "target": [1, 1, 1], "up": [0, 1, 0], "height": 3, "size": [6, 6]}
+            volume = {"size": [3, 3, 3], "values": values.tolist()}
+            for points in (((low, 0), (low + width, 2)), ((low + width / 2, 0), (low + width / 2, 2))):
+                transfer = {"points": [{"s": s, "extinction": e, "color": [1, 0.5, 0.25]} for s, e in points]}
+                scene = {"volume": volume, "transfer_function": transfer, "camera": camera}
+                with self.subTest(low=low, width=width, points=points):
+                    _, truth = self.render({**scene, "scheme": "reference"})
+                    radii = numpy.load(self.folder / "image.radius.npy")[..., None]
+                    _, image = self.render({**scene, "scheme": "cell_cubic"})
+                    self.assertGreater(truth[..., 3].max(), 0.1)
+                    self.assertTrue((abs(image - truth) <= 1e-6 + radii).all(), abs(image - truth).max())
+
+        huge = {**scene, "scheme": "cell_cubic", "volume": {**volume, "values": [0, 1e160] * 13 + [0]}}
+        self.assert_refused(self.run_program("render", self.write("s.json", huge), "-o", "i.npy"), "1e+160", "2^500")
 
     def test_reconstructions_differ_and_schemes_follow_them(self):
         images = []
@@ -185,7 +277,9 @@ class Images(ProgramTest):
             scene = {**NOISE, "scheme": scheme, **options}
             answer = self.json_of("eval", self.write("scene.json", scene))
             self.assertEqual((answer["size"], answer["scheme"]), ([24, 20], scheme))
-            self.assertEqual(list(answer["reference"]), ["measured_radius" if "shading" in options else "error_bound"])
+            self.assertEqual("measured_radius" in answer["reference"], "shading" in options)
+            self.assertEqual("error_bound" in answer["reference"], "shading" not in options)
+            self.assertEqual(answer["reference"]["certified"], "shading" not in options)
             self.assertEqual("error" in answer, scheme != "reference")
             if scheme == "reference":
                 continue

@@ -85,6 +85,43 @@ class Files(TableTest):
             self.assertLessEqual(abs(table.astype(float) / scale - truth).max(), error + 1e-9, name)
 
     @unittest.skipIf(numpy is None, "numpy (Debian: python3-numpy) is not installed")
+    def test_the_stated_error_is_that_of_the_stored_numbers(self):
+        """By look-ups of a reader's own, at the very place that is stated, and at every node."""
+        largest = {"float64": None, "float32": 1, "float16": 1, "unorm16": 65535, "unorm8": 255}
+        for name, scale in largest.items():
+            exact = numpy.load(self.make(changed(RAMP, "/format", "float64"))[0])
+            file, beside = self.make(changed(RAMP, "/format", name))
+            table = numpy.load(file).astype(float) / (scale or 1)
+            self.assertEqual(beside["error"]["rounding_max"], abs(table - exact).max())
+            n = len(table)
+            low, high = RAMP["range"]
+            place = [(beside["error"]["max_at"][axis] - low) / (high - low) * (n - 1) for axis in ("back", "front")]
+            (i, v), (j, u) = ((min(int(x), n - 2), x - min(int(x), n - 2)) for x in place)
+            found = (1 - v) * ((1 - u) * table[i, j] + u * table[i, j + 1]) + v * ((1 - u) * table[i + 1, j] + u * table[i + 1, j + 1])
+            case = {
+                "signal": {"kind": "piecewise_polynomial", "breaks": [0, RAMP["length"]],
+                           "coefficients": [[beside["error"]["max_at"]["front"],
+                                             (beside["error"]["max_at"]["back"] - beside["error"]["max_at"]["front"]) / RAMP["length"]]]},
+                "transfer_function": RAMP["transfer_function"], "sampling": {"kind": "cells"}, "schemes": ["reference"],
+            }
+            truth = self.json_of("eval", "-", stdin=case)["reference"]
+            error = abs(found - numpy.array([*truth["color"], truth["opacity"]])).max()
+            self.assertAlmostEqual(error, beside["error"]["max"], delta=1e-14 + truth["error_bound"])
+
+    @unittest.skipIf(numpy is None, "numpy (Debian: python3-numpy) is not installed")
+    def test_the_error_of_psi_is_that_of_the_stored_numbers(self):
+        errors = []
+        for name in ("float64", "unorm16", "unorm8"):
+            case = changed(changed(PSI, "/format", name), "/size", 256)
+            _, beside = self.make(case)
+            errors.append(beside["error"]["max"])
+            self.assertLessEqual(beside["error"]["rounding_max"], {"float64": 0, "unorm16": 0.5 / 65535, "unorm8": 0.5 / 255}[name])
+        self.assertGreater(beside["error"]["rounding_max"], 0.4 / 255)
+        for error, rounding in zip(errors[1:], (0.5 / 65535, 0.5 / 255)):
+            self.assertNotEqual(error, errors[0])
+            self.assertLessEqual(abs(error - errors[0]), rounding)
+
+    @unittest.skipIf(numpy is None, "numpy (Debian: python3-numpy) is not installed")
     def test_the_front_scalar_varies_faster_than_the_back_one(self):
         """Under a ramp the slab from low to high scalars shows its blue front more than the one from high to low."""
         table = numpy.load(self.make(RAMP)[0])

@@ -189,11 +189,18 @@ struct BandingFound {
   std::vector<std::optional<double>> gains = {};  ///< dB, by baseline; none without it or where nothing is banded
 };
 
+/// The error of what a screen shows of both images, where that is another one.
+struct ShownError {
+  ImageError error;
+  std::int64_t clamped_values = 0;  ///< colours of either image beyond [0, 1]
+};
+
 /// A variant's image, or its 8-bit frame, against a reference.
 struct Comparison {
   const Variant* variant;
   bool is_frame;
   ImageError error;
+  std::optional<ShownError> shown = {};
   std::optional<RelativeError> relative = {};             ///< none where the truth is too uncertain
   std::optional<BandingFound> banding = {};               ///< none of frames, or where it is not asked for
   double radius = 0;                                      ///< of the reference, the largest
@@ -295,6 +302,11 @@ class ViewStudy {
     Comparison found{
         .variant = &variant, .is_frame = kind == &Rendered::frame, .error = image_error(rendered.*kind, reference)};
     const ImageError& error = found.error;
+    const ClampedImage shown = clamped(rendered.*kind);
+    const ClampedImage shown_reference = clamped(reference);
+    if (shown.count + shown_reference.count > 0)
+      found.shown = {.error = image_error(shown.image, shown_reference.image),
+                     .clamped_values = shown.count + shown_reference.count};
     if (const double light = light_of(reference); error.relative && light > 3 * radii)
       found.relative = {.percent = 100 * *error.relative,
                         .radius = 100 * (1 + *error.relative) * 3 * radii / (light - 3 * radii)};
@@ -354,7 +366,7 @@ class ViewStudy {
 
   static double light_of(const Image& image) {
     double light = 0;
-    for (const auto& pixel : image.pixels) light += pixel.head<3>().max(0).min(1).sum();
+    for (const auto& pixel : image.pixels) light += pixel.head<3>().sum();
     return light;
   }
 
@@ -420,6 +432,31 @@ Columns<SceneTable> table_columns() {
   };
 }
 
+/// Only in rows of images with colours beyond [0, 1].
+Columns<ShownError> shown_columns() {
+  const auto of_error = [](const auto& member) {
+    return [member](const ShownError& shown) { return value_of(std::invoke(member, shown.error)); };
+  };
+  return {
+      {.name = "clamped_values",
+       .description = "colours of either image beyond [0, 1], which a screen clamps; the columns below are after that",
+       .cell = &ShownError::clamped_values},
+      {.name = "clamped_danskin_hanrahan",
+       .unit = "%",
+       .description = "danskin_hanrahan as a screen shows both images",
+       .cell = of_error([](const ImageError& error) { return 100 * error.relative.value_or(0); })},
+      {.name = "clamped_rmse",
+       .unit = "of white",
+       .description = "rmse, likewise",
+       .cell = of_error(&ImageError::rmse)},
+      {.name = "clamped_psnr", .unit = "dB", .description = "psnr, likewise", .cell = of_error(&ImageError::psnr)},
+      {.name = "clamped_maximum",
+       .unit = "of white",
+       .description = "maximum, likewise",
+       .cell = of_error(&ImageError::maximum)},
+  };
+}
+
 /// What a comparison gives, up to what depends on other variants.
 Columns<Comparison> comparison_columns() {
   Columns<Comparison> columns{
@@ -474,6 +511,8 @@ Columns<Comparison> comparison_columns() {
               .description = "mean of I - I_r",
               .radius = "radius",
               .cell = of_error(&ImageError::bias)}});
+  append_part(
+      columns, [](const Comparison& found) -> const auto& { return found.shown; }, shown_columns());
   return columns;
 }
 

@@ -5,6 +5,7 @@
 #include "raytruth/documents/case_json.hpp"
 #include "raytruth/documents/field_document.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
+#include "raytruth/documents/scene_warnings.hpp"
 #include "raytruth/documents/transfer_files/transfer_file.hpp"
 #include "raytruth/reference/ray_integral.hpp"
 #include "raytruth/tables/table3.hpp"
@@ -100,6 +101,28 @@ PiecewiseLinear read_transfer(const JsonReader& json, const SceneOptions& option
   return transfer;
 }
 
+std::array<std::int64_t, 2> read_image_size(const JsonReader& json) {
+  const auto items = json.items(2);
+  if (items.size() != 2) json.refuse_value("a list of width and height");
+  const std::array<std::int64_t, 2> size{items[0].integer(1, largest_image_side),
+                                         items[1].integer(1, largest_image_side)};
+  if (size[0] * size[1] > most_pixels) json.refuse("more than 2^28 pixels", "fewer");
+  return size;
+}
+
+/// One that shows the whole volume, for a scene that says none, or only its size.
+Camera fit_camera(const std::optional<JsonReader>& json, SceneFile& result) {
+  constexpr std::array<std::int64_t, 2> usual_size{512, 512};
+  const Grid& grid = result.scene.grid;
+  Camera camera = fitted_camera(grid.size, grid.spacing, json ? read_image_size(json->at("size")) : usual_size);
+  result.fitted_camera = {{"eye", camera.eye},
+                          {"target", camera.target},
+                          {"up", camera.up},
+                          {"fov_y", std::get<Perspective>(camera.projection).fov_y},
+                          {"size", camera.size}};
+  return camera;
+}
+
 Camera read_camera(const JsonReader& json, const Grid& grid) {
   json.only({"eye", "target", "up", "height", "fov_y", "size"});
   Camera camera{
@@ -111,10 +134,7 @@ Camera read_camera(const JsonReader& json, const Grid& grid) {
     camera.projection = Perspective{angle->positive_number()};
   else
     camera.projection = Orthographic{json.at("height").positive_number()};
-  const auto size = json.at("size").items(2);
-  if (size.size() != 2) json.at("size").refuse_value("a list of width and height");
-  for (std::size_t axis = 0; axis < 2; ++axis) camera.size[axis] = size[axis].integer(1, largest_image_side);
-  if (camera.size[0] * camera.size[1] > most_pixels) json.at("size").refuse("more than 2^28 pixels", "fewer");
+  camera.size = read_image_size(json.at("size"));
   json.blame_for([&] { return CameraView(camera, grid.spacing); });
   return camera;
 }
@@ -236,12 +256,15 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   if (const auto opaque = json.find("early_termination")) scene.opaque = opaque->number(0, 1);
   if (const auto empty = json.find("empty_space")) scene.empty_space = read_empty_space(*empty);
   scene.grid = read_voxels(json, options, result);
-  scene.camera = read_camera(json.at("camera"), scene.grid);
+  const auto camera = json.find("camera");
+  const bool says_more_than_size = camera && !(camera->is_object() && camera->json().size() == 1 && camera->find("size"));
+  scene.camera = says_more_than_size ? read_camera(*camera, scene.grid) : fit_camera(camera, result);
   const JsonReader transfer = json.at("transfer_function");
   scene.transfer = read_transfer(transfer, options, result, scene.grid);
   if (scene.shading && scene.transfer.is_linear_in_opacity()) result.transfer_function["lit"] = sampled_opacity;
   // RayIntegral refuses numbers that it cannot calculate with.
   transfer.blame_for([&] { return RayIntegral(scene.transfer, scene.emission); });
+  warn_of_what_is_not_seen(scene, result.warnings);
   return result;
 }
 

@@ -24,6 +24,7 @@ struct SceneFile {
   Scene scene;
   nlohmann::ordered_json volume = {};             ///< where it comes from
   nlohmann::ordered_json transfer_function = {};  ///< how it was understood
+  nlohmann::ordered_json fitted_camera = {};      ///< as a scene would say it; null: the scene has its own
   std::vector<std::string> warnings = {};         ///< one line each
 };
 

@@ -9,6 +9,7 @@
 #include "raytruth/tables/exact.hpp"
 #include "raytruth/tables/look_up_error.hpp"
 #include "raytruth/tables/partial_pre_integration.hpp"
+#include "raytruth/tables/table_file.hpp"
 
 #include <fmt/format.h>
 
@@ -56,6 +57,7 @@ Json error_json(const LookUpError& error) {
   if (error.band_max) json["diagonal_band_max"] = *error.band_max;
   json["places"] = error.places;
   json["error_bound"] = error.radius;
+  json["rounding_max"] = error.rounding;
   return json;
 }
 
@@ -85,18 +87,27 @@ MadeTable parabolic_table(const TableCase& asked, const SecondOrderMethod& metho
 
 MadeTable psi_table(const TableCase& asked) {
   const PsiTable table(asked.axes.size);
+  std::vector<double> in_file = table.values();
+  double rounding = 0;
+  for (double& value : in_file) {
+    const double computed = value;
+    value = read_back(asked.format, computed);
+    rounding = std::max(rounding, std::abs(value - computed));
+  }
+  const PsiTable stored(asked.axes.size, std::move(in_file));
   double largest = 0;
   for (std::uint64_t i = 0; i < psi_places_judged; ++i) {
     const auto random = random_numbers(seed, RandomStream::points, i);
     const double front = random[0] / (1 - random[0]);
     const double back = random[1] / (1 - random[1]);
-    largest =
-        std::max(largest, std::abs(table(front, back, PsiLookUp::bilinear) - partial_pre_integration_psi(front, back)));
+    largest = std::max(largest,
+                       std::abs(stored(front, back, PsiLookUp::bilinear) - partial_pre_integration_psi(front, back)));
   }
-  return {.shape = {table.size(), table.size()},
-          .values = table.values(),
-          .axes = {"gamma = D / (D + 1) of the back extinction's optical depth D", "the same of the front one"},
-          .error = {{"look_up", "bilinear, numbers not rounded"}, {"max", largest}, {"places", psi_places_judged}}};
+  return {
+      .shape = {table.size(), table.size()},
+      .values = table.values(),
+      .axes = {"gamma = D / (D + 1) of the back extinction's optical depth D", "the same of the front one"},
+      .error = {{"look_up", "bilinear"}, {"max", largest}, {"places", psi_places_judged}, {"rounding_max", rounding}}};
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <utility>
 
 namespace raytruth {
 
@@ -53,11 +54,12 @@ std::string pfm_file(const Image& image) {
   return file;
 }
 
-std::string npy_file(const Image& image) {
+template <class Number>
+std::string npy_file(const Image& image, std::string_view type) {
   std::string file =
-      npy_header("<f4", {static_cast<std::size_t>(image.size[1]), static_cast<std::size_t>(image.size[0]), 4});
+      npy_header(type, {static_cast<std::size_t>(image.size[1]), static_cast<std::size_t>(image.size[0]), 4});
   for (const Eigen::Array4d& pixel : image.pixels)
-    for (const double number : pixel) append(file, static_cast<float>(number));
+    for (const double number : pixel) append(file, static_cast<Number>(number));
   return file;
 }
 
@@ -79,13 +81,17 @@ void check_size(const std::filesystem::path& file, std::int64_t width, std::int6
            fmt::format("1 to {} along each side and 2^28 in all are allowed", largest_image_side));
 }
 
-Image from_png(const std::filesystem::path& file, const std::string& bytes) {
+StoredImage from_png(const std::filesystem::path& file, const std::string& bytes) {
   try {
     const PngPixels png = read_png(bytes, largest_image_side, most_pixels);
     Image image(png.size);
     for (std::size_t i = 0; i < png.channels.size(); ++i)
       image.pixels[i / 4][static_cast<Eigen::Index>(i % 4)] = static_cast<double>(png.channels[i]) / png.largest;
-    return image;
+    return {.image = std::move(image),
+            .has_opacity = png.has_opacity,
+            .is_png = true,
+            .is_srgb = png.is_srgb,
+            .gamma = png.gamma};
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", file.string(), error.what()));
   }
@@ -110,8 +116,8 @@ std::optional<Number> number_in(std::string_view word) {
 
 /// An image from numbers that lie in a file: `number(i)` is the i-th, rows in the order of the image.
 template <class NumberAt>
-Image from_numbers(const std::filesystem::path& file, std::int64_t width, std::int64_t height, std::size_t channels,
-                   NumberAt&& number) {
+StoredImage from_numbers(const std::filesystem::path& file, std::int64_t width, std::int64_t height,
+                         std::size_t channels, NumberAt&& number) {
   Image image({width, height});
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     Eigen::Array4d& pixel = image.pixels[i];
@@ -127,7 +133,7 @@ Image from_numbers(const std::filesystem::path& file, std::int64_t width, std::i
     }
     if (channels == 1) pixel[1] = pixel[2] = pixel[0];
   }
-  return image;
+  return {.image = std::move(image), .has_opacity = channels == 4};
 }
 
 template <class Number>
@@ -143,7 +149,7 @@ void check_bytes(const std::filesystem::path& file, std::size_t found, std::size
     refuse(file, fmt::format("{} bytes of pixels", found), fmt::format("{} are allowed by its header", expected));
 }
 
-Image read_pfm(const std::filesystem::path& file, const std::string& bytes) {
+StoredImage read_pfm(const std::filesystem::path& file, const std::string& bytes) {
   std::size_t at = 0;
   const std::string_view magic = next_word(bytes, at);
   const auto width = number_in<std::int64_t>(next_word(bytes, at));
@@ -171,7 +177,7 @@ std::string_view npy_value(std::string_view header, std::string_view key) {
   return end == std::string_view::npos ? std::string_view{} : header.substr(begin, end - begin);
 }
 
-Image read_npy(const std::filesystem::path& file, const std::string& bytes) {
+StoredImage read_npy(const std::filesystem::path& file, const std::string& bytes) {
   const auto refuse_header = [&](std::string_view found) {
     refuse(file, found,
            "a NumPy array of '<f4' or '<f8', C order, shape (height, width) or with 1, 3 or 4 channels, is allowed");
@@ -218,10 +224,11 @@ double srgb_of(double linear) {
 
 double linear_of(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4); }
 
-std::string image_file(const Image& image, std::string_view extension, Transfer8Bit transfer) {
+std::string image_file(const Image& image, std::string_view extension, Transfer8Bit transfer, NpyNumbers numbers) {
   if (extension == ".png") return png_file(image, transfer);
   if (extension == ".pfm") return pfm_file(image);
-  if (extension == ".npy") return npy_file(image);
+  if (extension == ".npy")
+    return numbers == NpyNumbers::binary64 ? npy_file<double>(image, "<f8") : npy_file<float>(image, "<f4");
   throw InputError(fmt::format("an image as {}; .png, .pfm or .npy is allowed",
                                extension.empty() ? "a file without extension" : printable(extension)));
 }
@@ -232,7 +239,7 @@ std::string number_file(const std::vector<double>& numbers, const std::array<std
   return file;
 }
 
-Image read_image(const std::filesystem::path& file) {
+StoredImage read_image(const std::filesystem::path& file) {
   const std::string extension = file.extension().string();
   const std::string bytes = bytes_of(file);
   if (extension == ".png") return from_png(file, bytes);

@@ -89,16 +89,27 @@ PngPixels read_png(const std::string& bytes, std::int64_t largest_side, std::int
   Reader reader(stream);
   png_struct* const png = reader.png;
   png_info* const info = reader.info;
+  bool has_opacity = false;
+  bool is_srgb = false;
+  double gamma = 0;  // 0: none is declared
   attempt(png, stream, [&] {
     png_set_user_limits(png, static_cast<png_uint_32>(largest_side), static_cast<png_uint_32>(largest_side));
     png_read_info(png, info);
+    has_opacity =
+        (png_get_color_type(png, info) & PNG_COLOR_MASK_ALPHA) != 0 || png_get_valid(png, info, PNG_INFO_tRNS) != 0;
+    int intent = 0;
+    is_srgb = png_get_sRGB(png, info, &intent) != 0;
+    png_get_gAMA(png, info, &gamma);
     png_set_expand(png);
     png_set_gray_to_rgb(png);
     png_set_add_alpha(png, 0xFFFF, PNG_FILLER_AFTER);
     png_set_interlace_handling(png);
     png_read_update_info(png, info);
   });
-  PngPixels result{.size = {png_get_image_width(png, info), png_get_image_height(png, info)}};
+  PngPixels result{.size = {png_get_image_width(png, info), png_get_image_height(png, info)},
+                   .has_opacity = has_opacity,
+                   .is_srgb = is_srgb};
+  if (!is_srgb && gamma > 0) result.gamma = gamma;
   if (result.size[0] * result.size[1] > most_pixels)
     throw InputError(
         fmt::format("{} x {} pixels; at most {} are allowed", result.size[0], result.size[1], most_pixels));

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,9 @@ namespace raytruth {
 struct PngPixels {
   std::array<std::int64_t, 2> size{};  ///< width and height
   int largest = 255;                   ///< 255, or 65535
+  bool has_opacity = false;            ///< else all are opaque
+  bool is_srgb = false;                ///< declared so; stored colours are linear light ^ gamma else, if there is one
+  std::optional<double> gamma = {};
   std::vector<std::uint16_t> channels = {};
 };
 

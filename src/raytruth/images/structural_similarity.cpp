@@ -14,10 +14,6 @@ namespace {
 
 constexpr std::int64_t reach = 5;
 constexpr std::int64_t window = 2 * reach + 1;
-// The smallest numbers that keep quotients of nothing defined: (K L)^2 with L = 1.
-constexpr double of_means = 0.01 * 0.01;
-constexpr double of_variances = 0.03 * 0.03;
-
 std::array<double, window> gaussian() {
   constexpr double deviation = 1.5;
   std::array<double, window> weights{};
@@ -35,12 +31,15 @@ using Moments = Eigen::Array<double, 5, 1>;
 
 }  // namespace
 
-std::optional<double> structural_similarity(const Image& image, const Image& reference) {
+std::optional<double> structural_similarity(const Image& image, const Image& reference, double peak) {
   if (image.size != reference.size)
     throw InputError(fmt::format("images of {} x {} and {} x {} pixels; equal sizes are allowed", image.size[0],
                                  image.size[1], reference.size[0], reference.size[1]));
   const auto [width, height] = image.size;
   if (width < window || height < window) return std::nullopt;
+  // The smallest numbers that keep quotients of nothing defined.
+  const double of_means = (0.01 * 0.01) * (peak * peak);
+  const double of_variances = (0.03 * 0.03) * (peak * peak);
   const auto weights = gaussian();
   const auto inner_width = static_cast<std::size_t>(width - 2 * reach);
   std::vector<Moments> along_rows(inner_width * static_cast<std::size_t>(height));
@@ -52,8 +51,8 @@ std::optional<double> structural_similarity(const Image& image, const Image& ref
         moments.setZero();
         for (std::size_t i = 0; i < weights.size(); ++i) {
           const std::size_t pixel = row * static_cast<std::size_t>(width) + column + i;
-          const double a = std::min(std::max(image.pixels[pixel][channel], 0.0), 1.0);
-          const double b = std::min(std::max(reference.pixels[pixel][channel], 0.0), 1.0);
+          const double a = image.pixels[pixel][channel];
+          const double b = reference.pixels[pixel][channel];
           moments += weights[i] * (Moments() << a, b, a * a, b * b, a * b).finished();
         }
       }

@@ -35,7 +35,37 @@ double half_height(const std::variant<Orthographic, Perspective>& projection) {
   return std::tan(angle / 2 * std::numbers::pi / 180);
 }
 
+double six_digits(double x) {
+  if (x == 0) return 0;
+  const double unit = std::pow(10, std::floor(std::log10(std::abs(x))) - 5);
+  return std::round(x / unit) * unit;
+}
+
 }  // namespace
+
+Camera fitted_camera(const std::array<std::int64_t, 3>& grid_size, const std::array<double, 3>& spacing,
+                     const std::array<std::int64_t, 2>& image_size) {
+  constexpr double fov_y = 30;
+  Eigen::Vector3d middle;
+  Eigen::Vector3d sides;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    const auto count = static_cast<double>(grid_size[axis]);
+    middle[i] = spacing[axis] * (count - 1) / 2;
+    sides[i] = spacing[axis] * count;
+  }
+  const double narrower = std::min(1.0, static_cast<double>(image_size[0]) / static_cast<double>(image_size[1]));
+  const double half_angle = std::atan(narrower * std::tan(fov_y / 2 * std::numbers::pi / 180));
+  const Eigen::Vector3d eye =
+      middle + Eigen::Vector3d(1, 0.75, -1.5).normalized() * (sides.norm() / 2 / std::sin(half_angle));
+  Camera camera{.up = {0, 1, 0}, .projection = Perspective{fov_y}, .size = image_size};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    camera.eye[axis] = six_digits(eye[i]);
+    camera.target[axis] = six_digits(middle[i]);
+  }
+  return camera;
+}
 
 CameraView::CameraView(const Camera& camera, const std::array<double, 3>& spacing)
     : is_perspective_(std::holds_alternative<Perspective>(camera.projection)),

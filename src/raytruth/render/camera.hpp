@@ -2,6 +2,7 @@
 
 #include "raytruth/images/image.hpp"
 #include "raytruth/signals/ray.hpp"
+#include "raytruth/signals/ray_displacement.hpp"
 
 #include <Eigen/Core>
 
@@ -30,17 +31,24 @@ struct Camera {
   std::array<std::int64_t, 2> size{};  ///< width and height in pixels
 };
 
+/// A perspective view of the whole grid, from its front, above and to the right: the sphere around it fills the
+/// narrower side of an image of this size. Its numbers have six digits, so that they can be copied.
+Camera fitted_camera(const std::array<std::int64_t, 3>& grid_size, const std::array<double, 3>& spacing,
+                     const std::array<std::int64_t, 2>& image_size);
+
 /// What a pixel sees.
 struct PixelRay {
   Ray ray;                 ///< in voxel coordinates; begins at the eye, or on the plane through it across the view
   double length_unit = 1;  ///< of one t of the ray, in smallest spacings: the unit of steps and of extinctions' lengths
+  RayDisplacement displacement = {};  ///< of the ray that the camera means, where it was asked for: `CameraRounding`
 };
 
 /// Makes rays of pixels. With f, r, u the unit vectors forward, right and up, a the image's width over its height, and
 /// h half its height (orthographic) or tan(fov_y / 2) (perspective), the pixel's centre has
 ///     x = a h (2 (column + 1/2) / width - 1),  y = h (1 - 2 (row + 1/2) / height),
 /// row 0 being the topmost; its ray is
-///     eye + x r + y u + t f   (orthographic)   or   eye + t (f + x r + y u)   (perspective).
+///     eye + x r + y u + t f   (orthographic)   or   eye + t (f + x r + y u)   (perspective),
+/// in binary64: every number of it is rounded.
 class CameraView {
  public:
   /// Throws InputError unless eye, target and up are finite and span a plane, 0 < height, 0 < fov_y < 180, all

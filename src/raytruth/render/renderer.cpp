@@ -1,6 +1,7 @@
 #include "raytruth/render/renderer.hpp"
 
 #include "raytruth/core/error.hpp"
+#include "raytruth/render/camera_rounding.hpp"
 #include "raytruth/render/technique.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 namespace raytruth {
@@ -27,6 +29,19 @@ void refuse_far_cameras(const Scene& scene, const CameraView& view) {
       for (const double x : view(column, row).ray.origin)
         if (!(std::abs(x) <= farthest))
           throw InputError(fmt::format("a ray from voxel coordinate {}; magnitudes up to 2^30 are allowed", x));
+}
+
+/// Some units in the last place of the way from where rays begin to the far end of the grid.
+double placing_error_of(const Scene& scene, const CameraView& view) {
+  const auto [width, height] = scene.camera.size;
+  double farthest = 0;
+  for (const std::int64_t column : {std::int64_t{0}, width - 1})
+    for (const std::int64_t row : {std::int64_t{0}, height - 1}) {
+      const auto& [x, y, z] = view(column, row).ray.origin;
+      farthest = std::max(farthest, std::abs(x) + std::abs(y) + std::abs(z));
+    }
+  const auto& [x, y, z] = scene.grid.size;
+  return 0x1p-46 * (farthest + static_cast<double>(x + y + z));
 }
 
 /// The diagonal of the grid, in smallest spacings.
@@ -52,17 +67,31 @@ PixelRendererFactory factory_of(const PreparedScene& prepared) {
 }  // namespace
 
 PreparedScene::PreparedScene(Scene its_scene)
-    : scene(std::move(its_scene)), view(scene.camera, scene.grid.spacing), field(ray_field(scene.grid, scene.field)) {
+    : scene(std::move(its_scene)),
+      view(scene.camera, scene.grid.spacing),
+      field(ray_field(scene.grid, scene.field)),
+      placing_error(placing_error_of(scene, view)) {
   refuse_far_cameras(scene, view);
   // A longer step makes the same samples, both ends of the ray, but numbers that nobody can calculate with.
   if (scene.step) scene.step = std::min(*scene.step, 2 * diagonal(scene.grid));
 }
 
 struct Renderer::Parts {
-  explicit Parts(Scene its_scene) : prepared(std::move(its_scene)), make_renderer(factory_of(prepared)) {}
+  explicit Parts(Scene its_scene) : prepared(std::move(its_scene)), make_renderer(factory_of(prepared)) {
+    const Scene& scene = prepared.scene;
+    if (scene.covers_camera && scene.scheme == "reference" && !scene.shading)
+      camera_rounding.emplace(scene.camera, scene.grid.spacing, scene.grid.size);
+  }
+
+  [[nodiscard]] PixelRay ray(std::int64_t column, std::int64_t row) const {
+    PixelRay result = prepared.view(column, row);
+    if (camera_rounding) result.displacement = (*camera_rounding)(column, row, result);
+    return result;
+  }
 
   PreparedScene prepared;
   PixelRendererFactory make_renderer;
+  std::optional<CameraRounding> camera_rounding;
 };
 
 Renderer::Renderer(Scene scene) : parts_(std::make_unique<const Parts>(std::move(scene))) {}
@@ -73,7 +102,13 @@ Rendering Renderer::render(const std::function<void(std::size_t, std::size_t)>& 
   const bool has_radii = parts_->prepared.scene.scheme == "reference";
   Rendering result{.image = Image(parts_->prepared.scene.camera.size),
                    .is_certified = has_radii && !parts_->prepared.scene.shading.has_value()};
-  if (has_radii) result.radii.resize(result.image.pixels.size());
+  if (has_radii) {
+    result.radii.resize(result.image.pixels.size());
+    result.covers_camera = parts_->camera_rounding.has_value();
+    result.tolerance = !result.is_certified      ? tolerance_of_lit_rays
+                       : parts_->camera_rounding ? tolerance_with_camera
+                                                 : tolerance_of_rays;
+  }
   const std::int64_t columns = (width + tile_side - 1) / tile_side;
   const std::int64_t tiles = columns * ((height + tile_side - 1) / tile_side);
 
@@ -87,7 +122,7 @@ Rendering Renderer::render(const std::function<void(std::size_t, std::size_t)>& 
     const std::int64_t left = tile % columns * tile_side;
     for (std::int64_t row = top; row < std::min(top + tile_side, height); ++row)
       for (std::int64_t column = left; column < std::min(left + tile_side, width); ++column) {
-        const PixelLight pixel = light_of_pixel(parts_->prepared.view(column, row));
+        const PixelLight pixel = light_of_pixel(parts_->ray(column, row));
         result.image.at(column, row) = pixel.light;
         if (has_radii) result.radii[static_cast<std::size_t>(row * width + column)] = pixel.radius;
         if (pixel.status != Status::converged) ++not_converged;

@@ -64,6 +64,9 @@ struct Scene {
   std::optional<SceneShading> shading = {};
   double opaque = std::numeric_limits<double>::infinity();  ///< rays end where their opacity reaches this
   std::optional<EmptySpace> empty_space = {};
+  /// Whether the radii of `reference` without shading are for the camera's rays as they are meant, not as CameraView
+  /// rounds them. Schemes see rounded rays: what they are off by is told best for these.
+  bool covers_camera = false;
 };
 
 }  // namespace raytruth

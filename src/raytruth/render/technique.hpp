@@ -25,6 +25,9 @@ struct PreparedScene {
   Scene scene;
   CameraView view;
   RayField field;
+  /// Voxels, where rays pass through the grid: more than a ray is misplaced there by the rounding of its numbers and of
+  /// the walk along it, unless `up` is next to parallel to the view.
+  double placing_error;
 };
 
 /// What a thread renders pixels with.

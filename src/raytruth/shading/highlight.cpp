@@ -69,15 +69,16 @@ double nearest(double shininess) {
 }
 
 std::vector<Highlight> make_highlights() {
+  constexpr Highlight::ClosedForm n;
   return {
-      {"lobe", "cosine^n", "Blinn 1977", 0, one},
-      {"cone", "max(0, 1 + n (cosine - 1))", "Guetat 2010, section 5.2", 1, one},
+      {"lobe", "cosine^n", "Blinn 1977", 0, one, n},
+      {"cone", "max(0, 1 + n (cosine - 1))", "Guetat 2010, section 5.2", 1, one, n},
       {"cone_energy", "the cone that reflects as much light as the lobe, exponent (n + 1)/2", "this project", 1,
-       [](double shininess) { return (1 + 1 / shininess) / 2; }},
+       [](double shininess) { return (1 + 1 / shininess) / 2; }, Highlight::ClosedForm{.addend = 1, .divisor = 2}},
       {"cone_minimax", "the cone with the least largest deviation from the lobe", "this project", 1, nearest<1>},
-      {"square", "max(0, 1 + n/2 (cosine - 1))^2", "this project", 2, one},
+      {"square", "max(0, 1 + n/2 (cosine - 1))^2", "this project", 2, one, n},
       {"square_minimax", "the square with the least largest deviation from the lobe", "this project", 2, nearest<2>},
-      {"cube", "max(0, 1 + n/3 (cosine - 1))^3", "this project", 3, one},
+      {"cube", "max(0, 1 + n/3 (cosine - 1))^3", "this project", 3, one, n},
       {"cube_minimax", "the cube with the least largest deviation from the lobe", "this project", 3, nearest<3>},
   };
 }

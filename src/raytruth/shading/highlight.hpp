@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -21,12 +22,22 @@ namespace raytruth {
 ///     g(fall) = log(ratio) + (q-1) log(1 - ratio fall / q) - (n-1) log(1 - fall/n),
 /// the logarithm of the two slopes' ratio, which turns once, at fall = (q (n-1) - m (q-1)) / (ratio (n-q)), and so has
 /// one zero at most on either side of it. In these terms all tends to a limit as n grows: cosine^n to exp(-fall).
+///
+/// `closed_form` is m exactly, where there is one; `exponent` is the same to rounding. The minimax members have none:
+/// of them `exponent`, a binary64 number, is what is meant.
 struct Highlight {
+  /// (n + addend) / divisor
+  struct ClosedForm {
+    double addend = 0;
+    double divisor = 1;
+  };
+
   std::string_view name;
   std::string_view summary;
   std::string_view source;
-  int degree;                         ///< q; 0: the lobe, no polynomial
-  double (*ratio)(double shininess);  ///< m/n; shininess may be infinite
+  int degree;                                  ///< q; 0: the lobe, no polynomial
+  double (*ratio)(double shininess);           ///< m/n; shininess may be infinite
+  std::optional<ClosedForm> closed_form = {};  ///< of m; none: `exponent` is what is meant
 
   /// m.
   [[nodiscard]] double exponent(double shininess) const { return shininess * ratio(shininess); }

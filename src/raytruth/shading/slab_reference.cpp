@@ -79,8 +79,12 @@ struct Highlighting {
 
 Highlighting highlighting_of(const Lighting& lighting) {
   if (lighting.is_lobe()) return {1.0, lighting.shininess, lighting.negative != Negative::none};
-  const double degree = lighting.highlight->degree;
-  return {Ball(lighting.highlight->exponent(lighting.shininess)) / degree, degree, true};
+  const Highlight& highlight = *lighting.highlight;
+  const double degree = highlight.degree;
+  const auto& exact = highlight.closed_form;
+  const Ball exponent = exact ? (Ball(lighting.shininess) + exact->addend) / exact->divisor
+                              : Ball(highlight.exponent(lighting.shininess));
+  return {exponent / degree, degree, true};
 }
 
 /// The shade of the highlight, before it is clamped at 0.
@@ -136,25 +140,52 @@ std::vector<Gap> merged(std::vector<Gap> gaps) {
   return result;
 }
 
-/// Where the shading of the two cosines is not analytic: at roots, and where the highlight's base is 0.
-std::vector<Gap> find_gaps(const Cosine& light, const Cosine& half, const Highlighting& highlighting,
-                           Negative negative) {
-  std::vector<Gap> gaps;
-  const auto add_roots = [&gaps](const Polynomial& p) {
+bool is_zero(const Ball& x) { return arb_is_zero(x.get()) != 0; }
+
+/// Whether the polynomial is 0 everywhere, as the numerator is of a vector perpendicular to both normals.
+bool is_zero(const Polynomial& p) { return p.size() == 0; }
+
+/// Where the shade of either cosine is not analytic: at its roots, and where the highlight's base is 0. Each has gaps
+/// of its own, for a cosine that is 0 all along the slab says nothing of the other one.
+struct Gaps {
+  std::vector<Gap> light;
+  std::vector<Gap> half;
+};
+
+Gaps find_gaps(const Cosine& light, const Cosine& half, const Highlighting& highlighting, Negative negative) {
+  Gaps gaps;
+  const auto add_roots = [](const Polynomial& p, std::vector<Gap>& to) {
+    // What is 0 everywhere is analytic, and has no sign to change.
+    if (is_zero(p)) return;
     std::vector<Gap> own;
     isolate(p, 0.0, 1.0, own);
-    gaps.insert(gaps.end(), own.begin(), own.end());
+    to.insert(to.end(), own.begin(), own.end());
   };
   if (negative != Negative::none) {
-    add_roots(light.numerator);
-    add_roots(half.numerator);
+    add_roots(light.numerator, gaps.light);
+    add_roots(half.numerator, gaps.half);
   }
   if (highlighting.is_clamped) {
     // c = +-(1 - 1/slope); squared, for the norm is a root. What else the square is 0 at does no harm.
     const Ball threshold = Ball(1.0) - Ball(1.0) / highlighting.slope;
-    add_roots(half.numerator * half.numerator - threshold * threshold * half.norm_square);
+    add_roots(half.numerator * half.numerator - threshold * threshold * half.norm_square, gaps.half);
   }
-  return merged(std::move(gaps));
+  return {merged(std::move(gaps.light)), merged(std::move(gaps.half))};
+}
+
+/// Whether a part that no gap ends inside of lies in one of them.
+bool are_over(const std::vector<Gap>& gaps, const Ball& begin, const Ball& end) {
+  return std::any_of(gaps.begin(), gaps.end(), [&](const Gap& gap) { return gap.begin <= begin && end <= gap.end; });
+}
+
+/// All values of a cosine between two places. The ball of the norm over a wide box may reach below 0, where the norm
+/// does not: then the box is halved.
+Ball cosine_between(const Cosine& cosine, const Ball& begin, const Ball& end) {
+  const Ball value = cosine(hull(begin, end));
+  const Ball narrowest = 0x1p-12;
+  if (arb_is_finite(value.get()) != 0 || !(narrowest < end - begin)) return value;
+  const Ball middle = ((begin + end) * 0.5).middle();
+  return hull(cosine_between(cosine, begin, middle), cosine_between(cosine, middle, end));
 }
 
 // --- Quadrature ---
@@ -236,9 +267,11 @@ Ball integral(const Integrand& what, const Ball& scale) {
 
 /// Both shades of a part of the slab: analytic ones, or, where a cut hides, the values that they may have.
 struct PartShades {
-  bool is_analytic = false;
+  bool is_diffuse_analytic = false;
+  bool is_specular_analytic = false;
   Shade diffuse;
   Shade specular;
+  bool is_dark = false;        ///< an analytic part that is sends no diffuse light
   bool has_highlight = false;  ///< an analytic part without one sends no specular light
   Ball diffuse_value;
   Ball specular_value;
@@ -302,16 +335,19 @@ class SlabSum {
   [[nodiscard]] Ball hidden() const { return (exp(-sums_.depth) * largest_light_).upper(); }
 
   void sum_up() {
+    const Gaps gaps = find_gaps(light_, half_, highlighting_, lighting_.negative);
+    std::vector<Ball> borders{1.0};
+    for (const std::vector<Gap>* own : {&gaps.light, &gaps.half})
+      for (const Gap& gap : *own) borders.insert(borders.end(), {gap.begin, gap.end});
+    std::sort(borders.begin(), borders.end());
     Ball reached = 0.0;
-    for (const Gap& gap : find_gaps(light_, half_, highlighting_, lighting_.negative)) {
-      add_part(reached, gap.begin, true);
-      add_part(gap.begin, gap.end, false);
-      reached = gap.end;
+    for (const Ball& border : borders) {
+      add_part(reached, border, gaps);
+      reached = border;
     }
-    add_part(reached, 1.0, true);
   }
 
-  [[nodiscard]] PartShades shades_of(const Ball& begin, const Ball& end, bool is_analytic) const {
+  [[nodiscard]] PartShades shades_of(const Ball& begin, const Ball& end, const Gaps& gaps) const {
     const Negative negative = lighting_.negative;
     PartShades result;
     const Ball middle = ((begin + end) * 0.5).middle();
@@ -320,33 +356,38 @@ class SlabSum {
     result.diffuse = diffuse_shade(negative, light_sign);
     result.specular = highlight_shade(highlighting_, negative, half_sign);
     const Ball base = result.specular.a + result.specular.b * half_(middle);
+    result.is_dark = is_zero(result.diffuse.b) || is_zero(light_.numerator);
     result.has_highlight = !highlighting_.is_clamped || base.sign() > 0;
-    const bool is_known = negative == Negative::none || (light_sign != 0 && half_sign != 0);
-    const bool is_clear = !highlighting_.is_clamped || base.sign() != 0 || arb_is_zero(base.get()) != 0;
-    result.is_analytic = is_analytic && is_known && is_clear;
-    if (!result.is_analytic) enclose_shades(begin, end, result);
+    const auto is_known = [negative](int sign, const Cosine& cosine) {
+      return negative == Negative::none || sign != 0 || is_zero(cosine.numerator);
+    };
+    const bool is_clear = !highlighting_.is_clamped || base.sign() != 0 || is_zero(base);
+    result.is_diffuse_analytic = is_known(light_sign, light_) && !are_over(gaps.light, begin, end);
+    result.is_specular_analytic = is_known(half_sign, half_) && is_clear && !are_over(gaps.half, begin, end);
+    enclose_shades(begin, end, result);
     return result;
   }
 
-  /// All values that the shades may have.
+  /// All values that shades may have which are not analytic.
   void enclose_shades(const Ball& begin, const Ball& end, PartShades& shades) const {
     const auto treated = [this](const Ball& cosine) {
       if (lighting_.negative == Negative::clamp) return max(cosine, 0.0);
       return lighting_.negative == Negative::mirror ? max(cosine, -cosine) : cosine;
     };
-    const Ball x = hull(begin, end);
-    shades.diffuse_value = treated(light_(x));
-    Ball base = Ball(1.0) - highlighting_.slope + highlighting_.slope * treated(half_(x));
+    if (!shades.is_diffuse_analytic) shades.diffuse_value = treated(cosine_between(light_, begin, end));
+    if (shades.is_specular_analytic) return;
+    const Ball cosine = treated(cosine_between(half_, begin, end));
+    Ball base = Ball(1.0) - highlighting_.slope + highlighting_.slope * cosine;
     if (highlighting_.is_clamped) base = max(base, 0.0);
     shades.specular_value = power_of(base, highlighting_.power);
   }
 
-  void add_part(const Ball& begin, const Ball& end, bool is_analytic) {
+  void add_part(const Ball& begin, const Ball& end, const Gaps& gaps) {
     if (!(begin < end)) return;
     // Nothing behind shows any more, but for what `rounded` adds.
     is_cut_short_ = is_cut_short_ || hidden() < Ball(0x1p-80);
     if (is_cut_short_) return;
-    const PartShades shades = shades_of(begin, end, is_analytic);
+    const PartShades shades = shades_of(begin, end, gaps);
     BallPiece piece{
         .signal = signal_.size() <= 1 ? signal_ : signal_.restricted(begin, end), .control = {}, .length = end - begin};
     piece.control = bernstein_coefficients(piece.signal);
@@ -370,9 +411,8 @@ class SlabSum {
     const Ball opacity = -expm1(-total);
     const Ball scale = is_associated_ ? opacity : Ball(1.0) < total ? length / total : length;
 
-    const auto is_zero = [](const Ball& x) { return arb_is_zero(x.get()) != 0; };
     const auto& change = stretch.color_change;
-    const bool has_weight = !std::all_of(change.begin(), change.end(), is_zero);
+    const bool has_weight = !std::all_of(change.begin(), change.end(), [](const Ball& x) { return is_zero(x); });
     const Polynomial weighted = has_weight ? stretch.weight * density : Polynomial();
     const auto plain = [&](const Polynomial& factor) { return integral({factor, depth, nullptr, nullptr}, scale); };
     const auto shaded = [&](const Polynomial& factor, const Cosine& cosine, const Shade& shade) {
@@ -383,12 +423,11 @@ class SlabSum {
     Ball diffuse_of_one = shades.diffuse_value * of_one;
     Ball diffuse_of_weight = shades.diffuse_value * of_weight;
     Ball specular = shades.specular_value * of_one;
-    if (shades.is_analytic) {
-      const bool is_dark = is_zero(shades.diffuse.b);
-      diffuse_of_one = is_dark ? Ball() : shaded(density, light, shades.diffuse);
-      diffuse_of_weight = is_dark ? Ball() : shaded(weighted, light, shades.diffuse);
-      specular = shades.has_highlight ? shaded(density, half, shades.specular) : Ball();
+    if (shades.is_diffuse_analytic) {
+      diffuse_of_one = shades.is_dark ? Ball() : shaded(density, light, shades.diffuse);
+      diffuse_of_weight = shades.is_dark ? Ball() : shaded(weighted, light, shades.diffuse);
     }
+    if (shades.is_specular_analytic) specular = shades.has_highlight ? shaded(density, half, shades.specular) : Ball();
     for (std::size_t i = 0; i < 3; ++i) {
       sums_.ambient[i] += front * (stretch.color[i] * of_one + change[i] * of_weight);
       sums_.diffuse[i] += front * (stretch.color[i] * diffuse_of_one + change[i] * diffuse_of_weight);

@@ -26,10 +26,10 @@ class TrilinearField {
   [[nodiscard]] const Grid& grid() const { return *voxels_; }
 
   void trace(const Ray& ray, Chain<3>& chain) const { trace_trilinear(*voxels_, ray, chain); }
-  /// `is_needless` as in `trilinear_error`.
-  [[nodiscard]] SignalError error(const Ray& ray, const Chain<3>& chain,
-                                  const std::vector<bool>& is_needless = {}) const {
-    return trilinear_error(*voxels_, ray, chain, is_needless);
+  /// `is_needless` and `displacement` as in `trilinear_error`.
+  [[nodiscard]] SignalError error(const Ray& ray, const Chain<3>& chain, const std::vector<bool>& is_needless = {},
+                                  const RayDisplacement& displacement = {}) const {
+    return trilinear_error(*voxels_, ray, chain, is_needless, displacement);
   }
 
  private:
@@ -53,9 +53,9 @@ class TricubicField {
   [[nodiscard]] const Grid& grid() const { return coefficients_ ? *coefficients_ : *voxels_; }
 
   void trace(const Ray& ray, Chain<9>& chain) const { trace_tricubic(grid(), kernel(), ray, chain); }
-  [[nodiscard]] SignalError error(const Ray& ray, const Chain<9>& chain,
-                                  const std::vector<bool>& is_needless = {}) const {
-    return tricubic_error(grid(), kernel(), ray, chain, coefficient_error_, is_needless);
+  [[nodiscard]] SignalError error(const Ray& ray, const Chain<9>& chain, const std::vector<bool>& is_needless = {},
+                                  const RayDisplacement& displacement = {}) const {
+    return tricubic_error(grid(), kernel(), ray, chain, coefficient_error_, is_needless, displacement);
   }
 
  private:

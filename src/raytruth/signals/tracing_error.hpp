@@ -5,6 +5,7 @@
 #include "raytruth/core/double_double4.hpp"
 #include "raytruth/signals/cell_walk.hpp"
 #include "raytruth/signals/ray.hpp"
+#include "raytruth/signals/ray_displacement.hpp"
 #include "raytruth/signals/signal_error_bound.hpp"
 #include "raytruth/volume/grid.hpp"
 
@@ -43,9 +44,10 @@ struct ExactLine {
 };
 
 /// The segment of a line between two lambda, in the coordinates of the cell around its middle, which it leaves at its
-/// ends by no more than rounding.
+/// ends by no more than rounding, and by `displacement` along each axis: how far the line that is meant may be.
 struct ExactSegment {
-  ExactSegment(const ExactLine& line, const DoubleDouble& lambda_begin, const DoubleDouble& lambda_end) {
+  ExactSegment(const ExactLine& line, const DoubleDouble& lambda_begin, const DoubleDouble& lambda_end,
+               const std::array<double, 3>& displacement) {
     using Vector = DoubleDouble4::Vector;
     const Vector origin{line.origin[0], line.origin[1], line.origin[2], 0};
     const Vector direction{line.direction[0], line.direction[1], line.direction[2], 0};
@@ -70,8 +72,8 @@ struct ExactSegment {
       cell.cell[axis] = static_cast<std::int64_t>(low[lane]);
       cell.begin[axis] = begin[lane];
       cell.end[axis] = end[lane];
-      if (line.direction[axis] == 0) continue;
-      const double noise_of_way = ExactLine::noise * std::abs(to.high[lane]);
+      if (line.direction[axis] == 0 && displacement[axis] == 0) continue;
+      const double noise_of_way = ExactLine::noise * std::abs(to.high[lane]) + displacement[axis];
       noise[axis] = noise_of_way + ExactLine::noise;
       before[axis] = std::max(0.0, noise_of_way - std::min(begin.high[lane], end.high[lane]));
       behind[axis] = std::max(0.0, noise_of_way + std::max(begin_of_high[lane], end_of_high[lane]));
@@ -139,20 +141,24 @@ struct Reconstruction {
 /// as values of polar forms, by at most sum_axes noise slope.
 ///
 /// Zero, exactly, where the chain is constant and the voxels of the cell are equal. If the neighbours are not, x(t) may
-/// be there for a moment at the piece's ends: that goes into `unclaimed`.
+/// be there for a moment at the piece's ends: that goes into `unclaimed`, unless the moment may be as long as the
+/// piece.
+///
+/// The line that is meant may be displaced against the ray: that is one more noise of its ends, and of its length.
 ///
 /// chain(t) may be read with u = (t - start) / length, and with u from 0 to 1 between start and end_of.
 ///
 /// Nothing is computed for pieces of which `is_needless` says so: their bounds are 0 and mean nothing.
 template <int Degree, class Exact>
 SignalError tracing_error(const Grid& grid, const Ray& ray, const Chain<Degree>& chain,
-                          const Reconstruction& reconstruction, const std::vector<bool>& is_needless, Exact&& exact) {
+                          const Reconstruction& reconstruction, const std::vector<bool>& is_needless,
+                          const RayDisplacement& displacement, Exact&& exact) {
   constexpr double value_noise = 0x1p-92;
   // It makes up for the rounding of the bounds themselves, sums of some twenty terms >= 0.
   constexpr double upwards = 1 + 0x1p-46;
 
   const ExactLine line(grid.size, ray);
-  SignalError error{.of_pieces = {}, .of_length = line.length_error(chain.end)};
+  SignalError error{.of_pieces = {}, .of_length = line.length_error(chain.end) + displacement.of_length};
   error.of_pieces.reserve(chain.pieces.size());
   DoubleDouble lambda_end = line.at(0.0);
   for (std::size_t i = 0; i < chain.pieces.size(); ++i) {
@@ -164,7 +170,10 @@ SignalError tracing_error(const Grid& grid, const Ray& ray, const Chain<Degree>&
       error.of_pieces.push_back(0);
       continue;
     }
-    const ExactSegment segment(line, lambda_begin, lambda_end);
+    std::array<double, 3> displaced{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      displaced[axis] = displacement.at_entry[axis] + chain.end_of(i).high * displacement.per_voxel[axis];
+    const ExactSegment segment(line, lambda_begin, lambda_end, displaced);
     const auto voxels = [&](const std::array<double, 3>& before, const std::array<double, 3>& behind) {
       std::array<std::int64_t, 3> first = segment.cell.cell;
       std::array<std::int64_t, 3> last = segment.cell.cell;
@@ -178,12 +187,20 @@ SignalError tracing_error(const Grid& grid, const Ray& ray, const Chain<Degree>&
     double step = 0;
     for (std::size_t k = 0; k < Degree; ++k) step = std::max(step, std::abs(b[k + 1] - b[k]));
     if (step == 0 && voxels({}, {}).are_all(b[0])) {
-      error.of_pieces.push_back(0);
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        if (line.direction[axis] != 0 && !reached.are_all(b[0]))
-          error.unclaimed +=
-              upwards * line.norm.high * (segment.before[axis] + segment.behind[axis]) / std::abs(line.direction[axis]);
-      continue;
+      double elsewhere = 0;  // how long x(t) may be among other voxels
+      if (!reached.are_all(b[0]))
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const double beyond = segment.before[axis] + segment.behind[axis];
+          const double speed = std::abs(line.direction[axis]) - line.norm.high * displacement.per_voxel[axis];
+          if (beyond > 0)
+            elsewhere +=
+                speed > 0 ? upwards * line.norm.high * beyond / speed : std::numeric_limits<double>::infinity();
+        }
+      if (elsewhere <= piece.length) {
+        error.of_pieces.push_back(0);
+        error.unclaimed += elsewhere;
+        continue;
+      }
     }
 
     const auto truth = exact(segment.cell);

@@ -136,13 +136,14 @@ void trace_tricubic(const Grid& grid, CubicKernel kernel, const Ray& ray, Chain<
 
 RAYTRUTH_DISPATCH
 SignalError tricubic_error(const Grid& grid, CubicKernel kernel, const Ray& ray, const Chain<9>& chain,
-                           double coefficient_error, const std::vector<bool>& is_needless) {
+                           double coefficient_error, const std::vector<bool>& is_needless,
+                           const RayDisplacement& displacement) {
   const auto matrix = kernel_matrix<DoubleDouble>(kernel);
   // The derivative of a B-spline is a mean of differences. Bernstein coefficients of a Catmull-Rom cubic are sums of
   // voxels with weights of magnitude 4/3 in all, those of its derivative sums of differences with 3: (4/3)^2 3.
   const Reconstruction tricubic{.margin = 1, .slope = kernel == CubicKernel::bspline ? 1 : 16.0 / 3};
   SignalError error =
-      tracing_error(grid, ray, chain, tricubic, is_needless,
+      tracing_error(grid, ray, chain, tricubic, is_needless, displacement,
                     [&](const CellSegment<DoubleDouble>& segment) { return cell_polynomial(grid, matrix, segment); });
   for (double& of_piece : error.of_pieces) of_piece += coefficient_error;
   return error;

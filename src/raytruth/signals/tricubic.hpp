@@ -2,6 +2,7 @@
 
 #include "raytruth/core/chain.hpp"
 #include "raytruth/signals/ray.hpp"
+#include "raytruth/signals/ray_displacement.hpp"
 #include "raytruth/signals/signal_error_bound.hpp"
 #include "raytruth/volume/grid.hpp"
 
@@ -41,7 +42,8 @@ void trace_tricubic(const Grid& grid, CubicKernel kernel, const Ray& ray, Chain<
 /// Bounds as those of `trilinear_error`. `coefficient_error` bounds the error of each voxel of `grid`, for B-spline
 /// coefficients that were made from others: `prefilter_error`. B-splines being means, the signal is off by no more.
 SignalError tricubic_error(const Grid& grid, CubicKernel kernel, const Ray& ray, const Chain<9>& chain,
-                           double coefficient_error = 0, const std::vector<bool>& is_needless = {});
+                           double coefficient_error = 0, const std::vector<bool>& is_needless = {},
+                           const RayDisplacement& displacement = {});
 
 /// The coefficients of the cubic B-spline that passes through the voxels of a clamped grid: on every line the
 /// tridiagonal system (c_{i-1} + 4 c_i + c_{i+1}) / 6 = v_i with c_{-1} = c_0, c_n = c_{n-1}, axis after axis (M.

@@ -113,9 +113,9 @@ Chain<3> trace_trilinear(const Grid& grid, const Ray& ray) {
 
 RAYTRUTH_DISPATCH
 SignalError trilinear_error(const Grid& grid, const Ray& ray, const Chain<3>& chain,
-                            const std::vector<bool>& is_needless) {
+                            const std::vector<bool>& is_needless, const RayDisplacement& displacement) {
   const Reconstruction trilinear{.margin = 0, .slope = 1};
-  return tracing_error(grid, ray, chain, trilinear, is_needless,
+  return tracing_error(grid, ray, chain, trilinear, is_needless, displacement,
                        [&grid](const CellSegment<DoubleDouble>& segment) { return cell_cubic(grid, segment); });
 }
 

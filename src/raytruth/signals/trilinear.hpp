@@ -2,6 +2,7 @@
 
 #include "raytruth/core/chain.hpp"
 #include "raytruth/signals/ray.hpp"
+#include "raytruth/signals/ray_displacement.hpp"
 #include "raytruth/signals/signal_error_bound.hpp"
 #include "raytruth/volume/grid.hpp"
 
@@ -31,8 +32,8 @@ Chain<3> trace_trilinear(const Grid& grid, const Ray& ray);
 /// that is rounded in the unit vector, the entry, the breaks and the coefficients, made by computing the coefficients a
 /// second time in 106 bits (`tracing_error`), in some five to ten times the chain's time. Beyond the field's end, where
 /// a chain may reach by rounding, s is the clamped field's. Zero where all voxels in reach are equal. `is_needless`
-/// marks pieces whose errors nobody asks for.
+/// marks pieces whose errors nobody asks for. `displacement`: the signal that is meant is that of a ray so far away.
 SignalError trilinear_error(const Grid& grid, const Ray& ray, const Chain<3>& chain,
-                            const std::vector<bool>& is_needless = {});
+                            const std::vector<bool>& is_needless = {}, const RayDisplacement& displacement = {});
 
 }  // namespace raytruth

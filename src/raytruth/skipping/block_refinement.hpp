@@ -31,24 +31,25 @@ inline BlockRefinement block_refinement(FieldKind field, const std::optional<dou
   }
 }
 
-/// A margin that is more than what a displacement by 10^-9 of a voxel changes in a field of this grid, for no cubic
-/// kernel has a derivative above 16/3 per axis and unit of the voxels' range; and more than a chain's rounding, some
-/// units in the last place of its voxels.
-inline double margin_of(const Grid& grid) {
+/// A margin that is more than what a displacement by this many voxels, or by 10^-9 of one, changes in a field of this
+/// grid, for no cubic kernel has a derivative above 16/3 per axis and unit of the voxels' range; and more than a
+/// chain's rounding, some units in the last place of its voxels.
+inline double margin_of(const Grid& grid, double displacement) {
   const auto [low, high] = grid.range();
-  return 1e-7 * std::max({high - low, std::abs(low), std::abs(high)});
+  return 1e-7 * std::max(1.0, displacement / 1e-9) * std::max({high - low, std::abs(low), std::abs(high)});
 }
 
-/// Blocks that hold for every point of every ray through a field: no block that is left out has anything to see.
+/// Blocks that hold for every point of every ray through a field, displaced by up to so many voxels: no block that is
+/// left out has anything to see.
 template <class Field>
-OccupiedBlocks certain_blocks(const Field& field, const ClearScalars& clear) {
+OccupiedBlocks certain_blocks(const Field& field, const ClearScalars& clear, double displacement) {
   constexpr std::int64_t side = 8;
   return {field.grid(),
           clear,
           side,
           {.growth = field.kind() == FieldKind::trilinear ? 0 : 1,
            .overshoot = field_overshoot(field.kind()),
-           .margin = margin_of(field.grid())}};
+           .margin = margin_of(field.grid(), displacement)}};
 }
 
 }  // namespace raytruth

@@ -4,6 +4,7 @@
 #include "raytruth/shading/slab_reference.hpp"
 #include "raytruth/tables/second_order.hpp"
 #include "raytruth/tables/table_error.hpp"
+#include "raytruth/tables/table_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -58,8 +59,15 @@ std::array<double, Count> random_scalars(const TableAxes& axes, std::uint64_t pl
   return scalars;
 }
 
-Vec4 in_format(const TableFormat& format, const Vec4& entry) {
-  return entry.unaryExpr([&](double value) { return stored(format, value); });
+Vec4 in_file(const TableFormat& format, const Vec4& entry) {
+  return entry.unaryExpr([&](double value) { return read_back(format, value); });
+}
+
+template <class Values>
+double largest_rounding(const TableFormat& format, const Values& values) {
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(read_back(format, value) - value));
+  return largest;
 }
 
 }  // namespace
@@ -74,12 +82,14 @@ LookUpError second_order_look_up_error(const Table3<float>& table, const Piecewi
     const Vec4 found = trilinear<double>(
         axes,
         [&](std::size_t front, std::size_t middle, std::size_t back) -> Vec4 {
-          return in_format(format, table.at(front, middle, back).cast<double>());
+          return in_file(format, table.at(front, middle, back).cast<double>());
         },
         scalars);
     errors.add(found, truth.rgba(), truth.radius);
   }
-  return errors.summary("trilinear");
+  LookUpError error = errors.summary("trilinear");
+  error.rounding = largest_rounding(format, table.values);
+  return error;
 }
 
 namespace {
@@ -124,19 +134,22 @@ LookUpError weighted_look_up_error(const Table<double>& table, const TableConten
       radius = std::max(radius, of_white.radius);
     }
     const Vec4 found = bilinear<double>(
-        axes, [&](std::size_t front, std::size_t back) -> Vec4 { return in_format(format, table.at(front, back)); },
+        axes, [&](std::size_t front, std::size_t back) -> Vec4 { return in_file(format, table.at(front, back)); },
         scalars);
     errors.add(found, truth, radius);
   }
-  return errors.summary("bilinear");
+  LookUpError error = errors.summary("bilinear");
+  error.rounding = largest_rounding(format, table.values);
+  return error;
 }
 
 LookUpError linear_look_up_error(const Table<double>& table, const PiecewiseLinear& transfer, Emission emission,
                                  const TableFormat& format) {
   const CertifiedCells truth = certified_cells(transfer, table.axes, emission, cells_judged, seed);
-  const TableError error = bilinear_error(
-      truth, [&](const CertifiedCell& /*cell*/, std::size_t front, std::size_t back) { return table.at(front, back); },
-      format);
+  const TableError error =
+      bilinear_error(truth, [&](const CertifiedCell& /*cell*/, std::size_t front, std::size_t back) -> Vec4 {
+        return in_file(format, table.at(front, back));
+      });
   return {.look_up = "bilinear",
           .max = error.max,
           .max_at = std::array{error.front, error.back},
@@ -144,7 +157,8 @@ LookUpError linear_look_up_error(const Table<double>& table, const PiecewiseLine
           .root_mean_square = error.root_mean_square,
           .band_max = error.band_max,
           .places = truth.cells.size() * places_per_axis * places_per_axis,
-          .radius = truth.radius};
+          .radius = truth.radius,
+          .rounding = largest_rounding(format, table.values)};
 }
 
 }  // namespace raytruth

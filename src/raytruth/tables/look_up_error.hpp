@@ -14,8 +14,8 @@
 
 namespace raytruth {
 
-/// How far look-ups in a table, its numbers rounded to a format, are from certified slabs, off its nodes: all channels,
-/// magnitudes.
+/// How far look-ups in a table, its numbers as a reader of its file gets them, are from certified slabs, off its nodes:
+/// all channels, magnitudes.
 struct LookUpError {
   std::string_view look_up;  ///< bilinear or trilinear
   double max = 0;
@@ -25,6 +25,7 @@ struct LookUpError {
   std::optional<double> band_max = {};  ///< the largest one beside the diagonal
   std::uint64_t places = 0;             ///< looked at
   double radius = 0;                    ///< of the certified slabs: a bound on the errors' error
+  double rounding = 0;                  ///< the largest of all entries, by the format; clamping is of it
 };
 
 /// The error of a table of slabs, by cells of its grid.

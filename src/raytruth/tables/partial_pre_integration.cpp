@@ -1,13 +1,16 @@
 #include "raytruth/tables/partial_pre_integration.hpp"
 
+#include "raytruth/core/error.hpp"
 #include "raytruth/reference/piece_integral.hpp"
 #include "raytruth/tables/look_up.hpp"
 #include "raytruth/transfer/emission.hpp"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace raytruth {
 
@@ -39,6 +42,11 @@ PsiTable::PsiTable(std::size_t size) : size_(size) {
       values_[back * size + front] =
           partial_pre_integration_psi(depth_of(axes.scalar(front)), depth_of(axes.scalar(back)));
   });
+}
+
+PsiTable::PsiTable(std::size_t size, std::vector<double> values) : size_(size), values_(std::move(values)) {
+  if (values_.size() != size * size)
+    throw InputError(fmt::format("{} numbers; {} x {} are allowed", values_.size(), size, size));
 }
 
 double PsiTable::operator()(double front_depth, double back_depth, PsiLookUp look_up) const {

@@ -30,6 +30,8 @@ class PsiTable {
  public:
   /// Throws InputError unless 2 <= size <= largest_table_size.
   explicit PsiTable(std::size_t size);
+  /// Such numbers as a format of a file changed them: size^2 of them.
+  PsiTable(std::size_t size, std::vector<double> values);
 
   [[nodiscard]] double operator()(double front_depth, double back_depth, PsiLookUp look_up) const;
 

@@ -25,17 +25,23 @@ void append(std::string& bytes, Number number) {
   bytes.append(raw.data(), raw.size());
 }
 
+constexpr double levels8 = 0xFF;
+constexpr double levels16 = 0xFFFF;
+
 /// Fixed-point numbers are stored as the integers of which they are multiples.
+long level(double value, double levels) { return std::lround(std::clamp(value, 0.0, 1.0) * levels); }
+
+Eigen::half half_of(double value) { return Eigen::half(static_cast<float>(value)); }
+
 void append(std::string& bytes, double value, const TableFormat& format) {
-  const auto level = [value](double levels) { return std::lround(std::clamp(value, 0.0, 1.0) * levels); };
   if (!format.is_texel) return append(bytes, value);
   switch (format.type) {
     case TexelType::unorm8:
-      return append(bytes, static_cast<std::uint8_t>(level(0xFF)));
+      return append(bytes, static_cast<std::uint8_t>(level(value, levels8)));
     case TexelType::unorm16:
-      return append(bytes, static_cast<std::uint16_t>(level(0xFFFF)));
+      return append(bytes, static_cast<std::uint16_t>(level(value, levels16)));
     case TexelType::float16:
-      return append(bytes, Eigen::numext::bit_cast<std::uint16_t>(Eigen::half(static_cast<float>(value))));
+      return append(bytes, Eigen::numext::bit_cast<std::uint16_t>(half_of(value)));
     case TexelType::float32:
       return append(bytes, static_cast<float>(value));
   }
@@ -79,6 +85,21 @@ std::string with_numbers(std::string bytes, const std::vector<double>& values, c
 }
 
 }  // namespace
+
+double read_back(const TableFormat& format, double value) {
+  if (!format.is_texel) return value;
+  switch (format.type) {
+    case TexelType::unorm8:
+      return static_cast<double>(level(value, levels8)) / levels8;
+    case TexelType::unorm16:
+      return static_cast<double>(level(value, levels16)) / levels16;
+    case TexelType::float16:
+      return static_cast<double>(half_of(value));
+    case TexelType::float32:
+      break;
+  }
+  return static_cast<double>(static_cast<float>(value));
+}
 
 std::string npy_bytes(const std::vector<std::size_t>& shape, const std::vector<double>& values,
                       const TableFormat& format) {

@@ -15,8 +15,25 @@ TEST(ImageError, OfTwoPixelsComputedByHand) {
   reference.at(1, 0) = {0.25, 0, 1, 1};
   Image image = reference;
   image.at(0, 0) = {0.5, 0.5, 0, 0};      // +1/4 in one channel; opacity is no light
-  image.at(1, 0) = {-0.25, 0.125, 2, 1};  // clamped: -1/4, +1/8, 0
-  const ImageError error = image_error(image, reference);
+  image.at(1, 0) = {-0.25, 0.125, 2, 1};  // -1/2, +1/8, +1; clamped: -1/4, +1/8, 0
+  const ImageError stored = image_error(image, reference);
+  EXPECT_EQ(stored.maximum, 1);
+  EXPECT_EQ(stored.place, (std::array<std::int64_t, 2>{1, 0}));
+  EXPECT_DOUBLE_EQ(stored.bias, 0.875 / 6);
+  EXPECT_DOUBLE_EQ(stored.rmse, std::sqrt((1.0 / 16 + 1.0 / 4 + 1.0 / 64 + 1) / 6));
+  EXPECT_DOUBLE_EQ(stored.relative.value(), 1.875 / 2);
+  EXPECT_DOUBLE_EQ(image_error(image, reference, Channels::color, 255).psnr.value(),
+                   20 * std::log10(255 / stored.rmse));
+
+  const ImageError opacity = image_error(image, reference, Channels::opacity);
+  EXPECT_EQ(opacity.maximum, 1);
+  EXPECT_DOUBLE_EQ(opacity.rmse, std::sqrt(0.5));
+  EXPECT_DOUBLE_EQ(image_error(image, reference, Channels::all).rmse,
+                   std::sqrt((1.0 / 16 + 1.0 / 4 + 1.0 / 64 + 1 + 1) / 8));
+
+  const ClampedImage shown = clamped(image);
+  EXPECT_EQ(shown.count, 2);
+  const ImageError error = image_error(shown.image, reference);
   EXPECT_EQ(error.maximum, 0.25);
   EXPECT_EQ(error.place, (std::array<std::int64_t, 2>{0, 0}));
   EXPECT_DOUBLE_EQ(error.bias, 0.125 / 6);

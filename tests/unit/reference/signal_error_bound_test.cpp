@@ -169,6 +169,37 @@ TEST(SignalErrorBound, TricubicBoundsHoldAndAreTight) {
     }
 }
 
+TEST(SignalErrorBound, CoversRaysThatAreDisplaced) {
+  const Grid noise = random_field(24, 0, 6);
+  const Grid two = labels(24);
+  std::vector<Ray> rays = hard_rays();
+  for (std::uint64_t i = 0; i < 20; ++i) rays.push_back(long_ray(noise, i));
+  for (const Grid* const grid : {&noise, &two})
+    for (const double size : {1e-13, 1e-6, 0.03, 1.7})
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        SCOPED_TRACE("ray " + std::to_string(i) + ", displaced by " + std::to_string(size));
+        const auto random = random_numbers(5, RandomStream::points, i);
+        RayDisplacement displacement;
+        std::array<double, 3> sign{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          displacement.at_entry[axis] = random[axis] < 0.2 ? 0 : size * random[axis];
+          displacement.per_voxel[axis] = 0.01 * size * (1 - random[axis]);
+          sign[axis] = random[(axis + 1) % 3] < 0.5 ? -1 : 1;
+        }
+        Chain<3> chain;
+        trace_trilinear(*grid, rays[i], chain);
+        const SignalError error = trilinear_error(*grid, rays[i], chain, {}, displacement);
+        const auto exact = exactly_directed_ray(*grid, rays[i]);
+        const Signal displaced = [&](const Real50& t) {
+          std::array<Real50, 3> point = exact.point(t);
+          for (std::size_t axis = 0; axis < 3; ++axis)
+            point[axis] += sign[axis] * (displacement.at_entry[axis] + t * displacement.per_voxel[axis]);
+          return trilinear_value(*grid, point);
+        };
+        expect_bounds(displaced, chain, error);
+      }
+}
+
 TEST(SignalErrorBound, LargeVolumesKeepTheirDigits) {
   const Grid grid = random_field(256, 0, 6);
   std::vector<double> bounds;

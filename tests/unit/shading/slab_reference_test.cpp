@@ -70,8 +70,14 @@ struct Slab50 {
       return c < 0 && std::fmod(lighting.shininess, 2) == 1 ? Real50(-power) : power;
     }
     const int q = lighting.highlight->degree;
-    const Real50 base = 1 + Real50(lighting.highlight->exponent(lighting.shininess)) / q * (c - 1);
+    const Real50 base = 1 + exponent() / q * (c - 1);
     return base > 0 ? Real50(pow(base, q)) : Real50(0);
+  }
+  /// (n + 1)/2 of the cone of equal energy; minimax members are what binary64 makes of them.
+  [[nodiscard]] Real50 exponent() const {
+    if (lighting.highlight->name == "cone_energy") return (Real50(lighting.shininess) + 1) / 2;
+    const bool is_minimax = lighting.highlight->name.ends_with("minimax");
+    return is_minimax ? lighting.highlight->exponent(lighting.shininess) : lighting.shininess;
   }
   [[nodiscard]] Real50 scalar(const Real50& x) const { return slab.front + x * (Real50(slab.back) - slab.front); }
 
@@ -100,8 +106,7 @@ struct Slab50 {
     add_changes([&](const Real50& x) { return cosine(lighting.light, x); }, result);
     add_changes([&](const Real50& x) { return cosine(lighting.half, x); }, result);
     if (!lighting.is_lobe()) {
-      const Real50 threshold =
-          1 - lighting.highlight->degree / Real50(lighting.highlight->exponent(lighting.shininess));
+      const Real50 threshold = 1 - lighting.highlight->degree / exponent();
       for (const int sign : {-1, 1})
         add_changes([&](const Real50& x) { return Real50(cosine(lighting.half, x) - sign * threshold); }, result);
     }
@@ -266,6 +271,54 @@ TEST(SlabReference, ConeThatIsTouchedOnly) {
   const auto found = slab_reference(slab, ramp_transfer(3), Emission::plain, lighting);
   EXPECT_LT(std::abs(found.specular[0]), 1e-15);
   EXPECT_EQ(found.status, Status::converged);
+}
+
+TEST(SlabReference, VectorsPerpendicularToBothNormals) {
+  // Exactly, in the plane of two axes, and to rounding, in a plane that lies askew.
+  const double s = std::sin(0.7);
+  const double c = std::cos(0.7);
+  const auto askew = [&](const Vector3<double>& v) {
+    const Vector3<double> tilted{v[0] * c - v[1] * s, v[0] * s + v[1] * c, v[2]};
+    return Vector3<double>{tilted[0], tilted[1] * c - tilted[2] * s, tilted[1] * s + tilted[2] * c};
+  };
+  const PiecewiseLinear transfer = ramp_transfer(4);
+  const auto& highlights = catalogue::highlights();
+  std::size_t turn = 0;
+  for (const double degrees : {0.0, 30.0, 45.0, 90.0, 150.0, 175.0})
+    for (const bool is_askew : {false, true})
+      for (const bool is_half : {false, true})
+        for (const Negative negative : {Negative::clamp, Negative::mirror, Negative::none}) {
+          const auto placed = [&](const Vector3<double>& v) { return is_askew ? askew(v) : v; };
+          const double radians = degrees * std::numbers::pi / 180;
+          const ShadedSlab slab{0.2, 0.7, 1, placed({0, 0, 1}), placed({0, std::sin(radians), std::cos(radians)})};
+          Lighting lighting = lighting_from(placed({1, 0, 0}), placed({0, 0.6, 0.8}));
+          if (is_half) std::swap(lighting.light, lighting.half);
+          lighting.negative = negative;
+          lighting.highlight = &highlights[turn % highlights.size()];
+          lighting.shininess = std::array{1.0, 3.0, 20.0}[turn / 3 % 3];
+          ++turn;
+          const std::string what = std::to_string(degrees) + (is_askew ? " askew" : "") +
+                                   (is_half ? " half, " : " light, ") + std::string(lighting.highlight->name);
+          const auto found = slab_reference(slab, transfer, Emission::associated, lighting);
+          EXPECT_LT(found.radius, 1e-15) << what;
+          EXPECT_LE(is_half ? 0 : found.diffuse.abs().maxCoeff(), is_askew ? 1e-16 : 0) << what;
+          const auto truth = Slab50{slab, transfer, lighting}.integrals(Emission::associated);
+          for (std::size_t i = 0; i < truth.size(); ++i)
+            EXPECT_LE(abs(truth[i] - numbers_of(found)[i]), found.radius)
+                << what << ", number " << i << ": " << numbers_of(found)[i] << " against " << truth[i];
+        }
+}
+
+TEST(SlabReference, TheConeOfEqualEnergyHasItsExactExponent) {
+  for (const double shininess : {2.0, 3.0, 149.0, 1001.0, 999999.0}) {
+    ShadedSlab slab{0, 1, 1, direction(0), {0, 0.28, 0.96}};
+    Lighting lighting = lighting_from(direction(0), direction(0));
+    lighting.highlight = find_named(catalogue::highlights(), "cone_energy");
+    lighting.shininess = shininess;
+    const auto found = slab_reference(slab, constant_transfer(3), Emission::associated, lighting);
+    const auto truth = Slab50{slab, constant_transfer(3), lighting}.integrals(Emission::associated);
+    EXPECT_LE(abs(truth[6] - found.specular[0]), found.radius) << shininess;
+  }
 }
 
 TEST(SlabReference, RefusesWhatHasNoAnswer) {

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace raytruth {
 
@@ -29,14 +30,19 @@ constexpr double voxels_at_once = 64;
 
 constexpr double deepest = 16;  // halved until they are thick; deeper ones are the reference's
 
+constexpr double largest_voxel = 0x1p500;  // as RayIntegral has it for points: squares of larger ones overflow
+
 constexpr double faintest = 0x1p-30;  // transmittance behind which nothing counts
 
 /// The cubic along the diagonal of a box [p, q] in a cell, from the cell's eight voxels: `trace_trilinear` says why.
-Bernstein<3> cell_cubic(const float* corner, const std::array<std::int64_t, 2>& stride, const Double4& p,
+template <class Number>
+Bernstein<3> cell_cubic(const Number* corner, const std::array<std::int64_t, 2>& stride, const Double4& p,
                         const Double4& q) {
   const auto [y, z] = stride;
-  const Double4 low = __builtin_convertvector(load2(corner, corner + y), Double4);
-  const Double4 high = __builtin_convertvector(load2(corner + z, corner + y + z), Double4);
+  Double4 low{};
+  Double4 high{};
+  load2(corner, corner + y, low);
+  load2(corner + z, corner + y + z, high);
   // x0y0 x1y0 x0y1 x1y1, at either end along z
   const Double4 at_p = low + p[2] * (high - low);
   const Double4 at_q = low + q[2] * (high - low);
@@ -57,25 +63,28 @@ Bernstein<3> cell_cubic(const float* corner, const std::array<std::int64_t, 2>& 
 
 CellMarch::CellMarch(const Grid& grid, const PiecewiseLinear& transfer, Emission emission, double opaque)
     : size_(grid.size),
-      voxels_(grid),
+      voxels_(are_binary32(grid) ? Voxels(std::in_place_type<PaddedVoxels<float>>, grid)
+                                 : Voxels(std::in_place_type<PaddedVoxels<double>>, grid)),
       intervals_(transfer),
       emission_(emission),
       opaque_(std::min(opaque, 1 - faintest)) {
   const auto [low, high] = grid.range();
-  const double largest = std::max(-low, high);
-  if (largest > std::numeric_limits<float>::max())
-    throw InputError(fmt::format("voxels up to {}; those of binary32 are allowed", largest));
+  if (const double most = std::max(-low, high); most > largest_voxel)
+    throw InputError(fmt::format("voxels up to {}; magnitudes up to 2^500 are allowed", most));
+  std::visit([&](const auto& voxels) { find_clear_cells(voxels, ClearScalars(transfer, emission)); }, voxels_);
+}
 
-  const ClearScalars clear(transfer, emission);
-  const auto [y, z] = voxels_.stride();
-  const std::int64_t count = voxels_.count() - (1 + y + z);  // all that have a cell, and some in between
-  clear_cells_.resize(static_cast<std::size_t>(voxels_.count() / 64 + 1));
+template <class Number>
+void CellMarch::find_clear_cells(const PaddedVoxels<Number>& voxels, const ClearScalars& clear) {
+  const auto [y, z] = voxels.stride();
+  const std::int64_t count = voxels.count() - (1 + y + z);  // all that have a cell, and some in between
+  clear_cells_.resize(static_cast<std::size_t>(voxels.count() / 64 + 1));
   // A word, 64 cells, is one thread's.
   tbb::parallel_for(std::size_t{0}, clear_cells_.size(), [&, y = y, z = z](std::size_t word) {
     for (std::int64_t bit = 0; bit < 64; ++bit) {
       const std::int64_t voxel = static_cast<std::int64_t>(word) * 64 + bit;
       if (voxel >= count) break;
-      const float* const corner = voxels_.data() + voxel;
+      const Number* const corner = voxels.data() + voxel;
       const auto [least, most] = std::minmax(
           {corner[0], corner[1], corner[y], corner[y + 1], corner[z], corner[z + 1], corner[y + z], corner[y + z + 1]});
       if (clear.contain(least, most)) clear_cells_[word] |= std::uint64_t{1} << bit;
@@ -85,8 +94,8 @@ CellMarch::CellMarch(const Grid& grid, const PiecewiseLinear& transfer, Emission
 
 /// Walks from `begin` to `end`, in voxels along the ray, and keeps the cells that are not clear. All axes go through
 /// the same arithmetic in every step, as in CellWalk.
-RAYTRUTH_DISPATCH
-void CellRay::collect(const PixelRay& pixel, double begin, double end) {
+template <class Number>
+void CellRay::collect_from(const PaddedVoxels<Number>& voxels, const PixelRay& pixel, double begin, double end) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr Double4 zero{};
   constexpr Double4 one{1, 1, 1, 1};
@@ -113,7 +122,6 @@ void CellRay::collect(const PixelRay& pixel, double begin, double end) {
     local = local > zero ? local : zero;
     local = local < one ? local : one;
   };
-  const PaddedVoxels& voxels = march_.voxels();
   const std::array<std::int64_t, 3> stride{1, voxels.stride()[0], voxels.stride()[1]};
   std::int64_t voxel = voxels.at(static_cast<std::int64_t>(cell[0]), static_cast<std::int64_t>(cell[1]),
                                  static_cast<std::int64_t>(cell[2])) -
@@ -138,6 +146,15 @@ void CellRay::collect(const PixelRay& pixel, double begin, double end) {
     offset -= crosses ? step : zero;
     for (int axis = 0; axis < 3; ++axis) voxel -= crosses[axis] * voxel_step[static_cast<std::size_t>(axis)];
   }
+}
+
+RAYTRUTH_DISPATCH
+void CellRay::collect(const PixelRay& pixel, double begin, double end) {
+  // Not by std::visit: what it calls is not compiled for every level.
+  if (const auto* const voxels = std::get_if<PaddedVoxels<float>>(&march_.voxels()))
+    collect_from(*voxels, pixel, begin, end);
+  else
+    collect_from(*std::get_if<PaddedVoxels<double>>(&march_.voxels()), pixel, begin, end);
 }
 
 /// Light and opacity of every cell that was collected, or of its parts.
@@ -256,8 +273,8 @@ PixelRendererFactory prepare(const PreparedScene& prepared) {
   const auto march = std::make_shared<const CellMarch>(scene.grid, scene.transfer, scene.emission, scene.opaque);
   auto blocks = asked_blocks(scene, field);
   if (!blocks)
-    blocks =
-        std::make_shared<const OccupiedBlocks>(certain_blocks(field, ClearScalars(scene.transfer, scene.emission)));
+    blocks = std::make_shared<const OccupiedBlocks>(
+        certain_blocks(field, ClearScalars(scene.transfer, scene.emission), prepared.placing_error));
   return [&scene, march, blocks]() -> PixelRenderer {
     return [march, blocks, ray = CellRay(*march, scene.transfer, scene.emission),
             parts_of = PartsOfRay(scene.grid.size, blocks.get())](const PixelRay& pixel) mutable -> PixelLight {
@@ -270,7 +287,7 @@ PixelRendererFactory prepare(const PreparedScene& prepared) {
 
 extern const Technique cell_march_pixels;
 const Technique cell_march_pixels{.name = "cell_march",
-                                  .summary = "the cubic of every cell, from voxels in binary32",
+                                  .summary = "the cubic of every cell",
                                   .applies =
                                       [](const Scene& scene) {
                                         return scene.scheme == "cell_cubic" && scene.field == FieldKind::trilinear &&

@@ -8,6 +8,7 @@
 #include "raytruth/render/camera.hpp"
 #include "raytruth/render/techniques/padded_voxels.hpp"
 #include "raytruth/schemes/omissions.hpp"
+#include "raytruth/skipping/clear_scalars.hpp"
 #include "raytruth/transfer/emission.hpp"
 #include "raytruth/volume/grid.hpp"
 
@@ -18,24 +19,28 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <variant>
 #include <vector>
 
 namespace raytruth {
 
 /// The cubic of every cell that a ray crosses (`cell_cubic`), for images: the walk in binary64 without the last digits
-/// of `trace_trilinear`, from voxels in binary32. Cells whose eight voxels are clear are known beforehand and passed
-/// over; others are cut where they cross the transfer function's points. Parts that are not deep are integrated side by
-/// side by a rule of Gauss (CellKernels), all others by RayIntegral. A ray ends where less than 2^-30 of the light
-/// behind it would be seen. Reads what it is made of; one `CellRay` per thread.
+/// of `trace_trilinear`, from voxels in binary32 where that holds them exactly, else in binary64. Cells whose eight
+/// voxels are clear are known beforehand and passed over; others are cut where they cross the transfer function's
+/// points. Parts that are not deep are integrated side by side by a rule of Gauss (CellKernels), all others by
+/// RayIntegral. A ray ends where less than 2^-30 of the light behind it would be seen. Reads what it is made of; one
+/// `CellRay` per thread.
 ///
 /// Only for transfer functions that are linear in extinction; the scheme itself (scheme_pixels) does the others.
 class CellMarch {
  public:
-  /// Throws InputError for voxels beyond the range of binary32, and as RayIntegral does.
+  using Voxels = std::variant<PaddedVoxels<float>, PaddedVoxels<double>>;
+
+  /// Throws InputError for voxels beyond 2^500, and as RayIntegral does.
   CellMarch(const Grid& grid, const PiecewiseLinear& transfer, Emission emission, double opaque);
 
   [[nodiscard]] const std::array<std::int64_t, 3>& size() const { return size_; }
-  [[nodiscard]] const PaddedVoxels& voxels() const { return voxels_; }
+  [[nodiscard]] const Voxels& voxels() const { return voxels_; }
   [[nodiscard]] const LinearIntervals& intervals() const { return intervals_; }
   [[nodiscard]] Emission emission() const { return emission_; }
   [[nodiscard]] double opaque() const { return opaque_; }
@@ -46,8 +51,11 @@ class CellMarch {
   }
 
  private:
+  template <class Number>
+  void find_clear_cells(const PaddedVoxels<Number>& voxels, const ClearScalars& clear);
+
   std::array<std::int64_t, 3> size_;
-  PaddedVoxels voxels_;
+  Voxels voxels_;
   LinearIntervals intervals_;
   Emission emission_;
   double opaque_;
@@ -78,6 +86,8 @@ class CellRay {
     double most_depth = 0;
   };
 
+  template <class Number>
+  void collect_from(const PaddedVoxels<Number>& voxels, const PixelRay& pixel, double begin, double end);
   void collect(const PixelRay& pixel, double begin, double end);
   void composite(Eigen::Array4d& sum);
   void integrate_cells();

@@ -31,4 +31,12 @@ inline Float4 load2(const float* from, const float* and_from) {
   return std::bit_cast<Float4>(halves);
 }
 
+/// Four such numbers as binary64. By reference: a function that returns four of them has another way to do so for each level.
+inline void load2(const float* from, const float* and_from, Double4& result) {
+  result = __builtin_convertvector(load2(from, and_from), Double4);
+}
+inline void load2(const double* from, const double* and_from, Double4& result) {
+  result = Double4{from[0], from[1], and_from[0], and_from[1]};
+}
+
 }  // namespace raytruth

@@ -35,8 +35,8 @@ PixelRendererFactory prepare_reference(const PreparedScene& prepared) {
   const Scene& scene = prepared.scene;
   return std::visit(
       [&]<class Field>(const Field& field) -> PixelRendererFactory {
-        const auto blocks =
-            std::make_shared<const OccupiedBlocks>(certain_blocks(field, ClearScalars(scene.transfer, scene.emission)));
+        const auto blocks = std::make_shared<const OccupiedBlocks>(
+            certain_blocks(field, ClearScalars(scene.transfer, scene.emission), prepared.placing_error));
         return [&field, &scene, blocks]() -> PixelRenderer {
           return
               [&field, blocks, parts_of = PartsOfRay(field.grid().size, blocks.get()), chain = Chain<Field::degree>(),

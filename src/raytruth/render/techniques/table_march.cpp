@@ -21,7 +21,7 @@ struct Place {
 
 /// The loop over slabs k = first ... last - 1 of a ray; what it needs at hand.
 struct TableMarch::March {
-  const PaddedVoxels& voxels;
+  const PaddedVoxels<float>& voxels;
   const float* texels;
   int entries;
   bool is_linear;
@@ -97,7 +97,8 @@ TableMarch::TableMarch(const Grid& grid, const Table<double>& table, TableFilter
 RAYTRUTH_DISPATCH
 Eigen::Array4d TableMarch::operator()(const PixelRay& pixel,
                                       const std::optional<std::span<const RayPart>>& parts) const {
-  const auto& [ray, length_unit] = pixel;
+  const Ray& ray = pixel.ray;
+  const double length_unit = pixel.length_unit;
   const Span inside = clip(size_, ray.origin, ray.direction);
   if (!(inside.begin < inside.end)) return Eigen::Array4d::Zero();
   const auto begin = static_cast<double>(inside.begin);

@@ -30,7 +30,7 @@ class TableMarch {
   struct March;
 
   std::array<std::int64_t, 3> size_;
-  PaddedVoxels voxels_;
+  PaddedVoxels<float> voxels_;
   std::vector<float> texels_;
   int entries_;
   TableFilter filter_;
