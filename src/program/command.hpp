@@ -56,7 +56,8 @@ class CommandOptions {
   CLI::App& parser_;
 };
 
-/// What the program can be told to do: a row of `commands()`. It throws InputError (exit code 2) or MissingError (3).
+/// What the program can be told to do: a row of `commands()`. It throws InputError (exit code 2), MissingError (3) or
+/// OutputError (4).
 struct Command {
   std::string_view name;
   std::string_view summary;

@@ -21,6 +21,7 @@ namespace {
 
 constexpr int bad_input = 2;
 constexpr int missing = 3;
+constexpr int not_written = 4;
 constexpr int most_threads = 9999;
 
 CLI::Range any_seed() { return {std::int64_t{0}, std::numeric_limits<std::int64_t>::max()}; }
@@ -31,7 +32,10 @@ class CommandLine {
   CommandLine() {
     program_.require_subcommand(1);
     program_.set_version_flag("--version", fmt::format("raytruth {} ({})", version, commit));
-    program_.footer("Exit codes: 0 done; 1 a bound does not hold (--check); 2 bad input; 3 something is missing here.");
+    program_.footer(
+        "Exit codes: 0 done; 1 a bound does not hold (--check); 2 bad input; 3 something is missing here;\n4 the "
+        "answer "
+        "could not be written.");
     for (const Command* command : commands()) add(*command);
   }
 
@@ -85,6 +89,9 @@ int run_program(int argc, char** argv) {
   } catch (const MissingError& error) {
     say(error.what());
     return missing;
+  } catch (const OutputError& error) {
+    say(error.what());
+    return not_written;
   } catch (const std::bad_alloc&) {
     say("this needs more memory than the machine has");
     return missing;

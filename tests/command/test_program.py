@@ -4,7 +4,7 @@ import os
 import subprocess
 import unittest
 
-from support import EXPERIMENT, PROGRAM, RAY, ProgramTest, changed
+from support import EXPERIMENT, PROGRAM, RAY, SOURCE, ProgramTest, changed
 
 COMMANDS = ["run", "list", "eval", "render", "compare", "plot", "diff", "info", "vectors", "score"]
 HEADER = b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 3 4\nencoding: raw\nspacings: 1 1 2\n\n"
@@ -93,8 +93,37 @@ class Streams(ProgramTest):
         for arguments in (["list"], ["--help"], ["eval", self.write("case.json", RAY)]):
             with open("/dev/full", "wb") as full:
                 done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, stdout=full, stderr=subprocess.PIPE)
-            self.assertEqual(done.returncode, 2)
+            self.assertEqual(done.returncode, 4)
             self.assertEqual(done.stderr.count(b"\n"), 1)
+
+    def test_what_cannot_be_written_is_no_bad_input(self):
+        """Exit code 4, and the name that was asked for, whatever is written beside it first."""
+        self.write("case.json", RAY)
+        scene = {"volume": {"kind": "random_field", "size": 8, "smoothing": 1}, "transfer_function": RAY["transfer_function"], "scheme": "reference",
+                 "camera": {"eye": [30, 4, 4], "target": [3.5, 3.5, 3.5], "up": [0, 1, 0], "height": 8, "size": [4, 4]}}
+        table = {"transfer_function": RAY["transfer_function"], "builder": "exact", "size": 8, "length": 1, "range": [0, 1], "format": "float32"}
+        result = self.write("small.json", self.json_of("run", self.write("experiment.json", EXPERIMENT)))
+        self.write("file", b"")
+        for folder, why in (("absent/", "No such file or directory"), ("file/", "Not a directory")):
+            for file, arguments in (("v.json", ("vectors", "-o")), ("i.npy", ("render", self.write("scene.json", scene), "-o")),
+                                    ("t.npy", ("table", self.write("table.json", table), "-o")), ("l.json", ("ledger", result, "-o"))):
+                with self.subTest(file=folder + file):
+                    self.assert_refused(self.run_program(*arguments, folder + file), f"{folder}{file}: cannot be written: {why}", code=4)
+        for arguments in (("run", "experiment.json"), ("plot", result)):
+            self.assert_refused(self.run_program(*arguments, "-o", "file/out"), "file/out: cannot be written", code=4)
+
+    def test_a_disk_that_fills_up(self):
+        """Files of at most 24 KiB stand for it: exit code 4, the name that was asked for, and nothing half written."""
+        table = {"transfer_function": RAY["transfer_function"], "builder": "exact", "size": 128, "length": 1, "range": [0, 1], "format": "float32"}
+        self.write("table.json", table)
+        limited = ["bash", "-c", 'trap "" XFSZ; ulimit -f 24; exec "$0" "$@"', PROGRAM]
+        for file, arguments in (("v.json", ["vectors", "-o", "v.json"]), ("t.npy", ["table", "table.json", "-o", "t.npy"]),
+                                ("./clamps.svg", ["plot", SOURCE / "results/clamps.json"])):
+            with self.subTest(file=file):
+                before = self.names_in_folder()
+                done = subprocess.run([*limited, *arguments], cwd=self.folder, capture_output=True, timeout=300)
+                self.assert_refused(done, f"raytruth: {file}: cannot be written: File too large", code=4)
+                self.assertEqual(self.names_in_folder(), before)
 
     def test_case_from_a_pipe(self):
         read = subprocess.run(["bash", "-c", '"$0" eval <(cat)', PROGRAM], input=str(RAY).replace("'", '"').encode(),

@@ -97,7 +97,7 @@ class Vectors(ProgramTest):
                     self.assertLessEqual(abs(x - y), bound)
 
     def test_what_cannot_be_written(self):
-        self.assert_refused(self.run_program("vectors", "-o", "absent/v.json"), "absent/v.json: ", "cannot be written")
+        self.assert_refused(self.run_program("vectors", "-o", "absent/v.json"), "absent/v.json: ", "cannot be written", code=4)
         self.assert_refused(self.run_program("vectors", "--seed", "-1"), "--seed")
         self.assert_refused(self.run_program("vectors", "--seed", "x"), "--seed")
 
