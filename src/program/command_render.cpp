@@ -4,7 +4,6 @@
 #include "raytruth/documents/scene_document.hpp"
 #include "raytruth/images/image_file.hpp"
 #include "raytruth/render/renderer.hpp"
-#include "raytruth/volume/files/find_volume.hpp"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -24,7 +23,7 @@ struct RenderOptions {
   bool is_linear = false;              ///< 8 bits are linear light, not sRGB
   std::optional<std::string> opacity;  ///< a transfer function's file, whose opacities are taken
   bool ignores_gradient_opacity = false;
-  std::string data;
+  VolumeOptions volumes;
 };
 
 /// Renders, telling on a terminal how far it is.
@@ -47,7 +46,7 @@ int render_scene(const RenderOptions& options) {
   image_file(Image({1, 1}), file.extension().string(), transfer);  // refuses the name before anything is rendered
 
   const JsonReader json = JsonReader::from_file(options.scene);
-  SceneFile scene = read_scene(json, {.folders = volume_folders(options.data),
+  SceneFile scene = read_scene(json, {.volumes = volume_access(options.volumes),
                                       .opacity = options.opacity,
                                       .ignores_gradient_opacity = options.ignores_gradient_opacity});
   for (const std::string& warning : scene.warnings) say(warning);
@@ -57,6 +56,7 @@ int render_scene(const RenderOptions& options) {
                                 {"scheme", scene.scene.scheme},
                                 {"volume", std::move(scene.volume)},
                                 {"transfer_function", std::move(scene.transfer_function)}};
+  if (!scene.warnings.empty()) result["warnings"] = scene.warnings;
   const Rendering rendering = json.at("scheme").blame_for([&] { return render(Renderer(std::move(scene.scene))); });
   if (file.extension() == ".png") result["encoding"] = options.is_linear ? "linear" : "sRGB";
   write_whole(file, image_file(rendering.image, file.extension().string(), transfer));
@@ -91,7 +91,8 @@ std::function<int()> describe(CommandOptions& add) {
            "Take the opacities of this transfer function, for colour maps without");
   add.flag("--ignore-gradient-opacity", options->ignores_gradient_opacity,
            "Accept transfer functions whose opacity depends on the gradient, and leave that out");
-  add.data(options->data);
+  add.data(options->volumes);
+  add.nan(options->volumes);
   return [options] { return render_scene(*options); };
 }
 

@@ -1,5 +1,6 @@
 """`raytruth` itself: help, lists, volumes, streams, and plots where matplotlib is missing."""
 
+import json
 import os
 import subprocess
 import unittest
@@ -26,7 +27,7 @@ class Help(ProgramTest):
 
 
 class Lists(ProgramTest):
-    kinds = ["signals", "fields", "transfers", "samplings", "schemes", "measures", "shadings", "tables", "experiments"]
+    kinds = ["signals", "fields", "transfers", "samplings", "schemes", "measures", "shadings", "tables", "experiments", "volumes"]
 
     def test_everything(self):
         everything = self.json_of("list", "--json")
@@ -75,7 +76,41 @@ class Volumes(ProgramTest):
         self.write("v.nrrd", HEADER.replace(b"2 3 4", b"1048576 1048576 1") + bytes(23))
         self.assert_refused(self.run_program("info", "v.nrrd"), "v.nrrd")
         self.write("v.txt", b"")
-        self.assert_refused(self.run_program("info", "./v.txt"), "v.txt")
+        for name in ("./v.txt", "v.txt"):
+            self.assert_refused(self.run_program("info", name), "v.txt: neither the name nor the first bytes tell the format; .nrrd, ")
+        for name in ("./absent.nrrd", "absent.nrrd"):
+            self.assert_refused(self.run_program("info", name), f"{name}: no such file here, and no such volume in the data folders")
+
+    def test_names_that_are_nearly_those_of_volumes(self):
+        self.write("bonsai_256.nrrd", HEADER + bytes(24))
+        self.assert_refused(self.run_program("info", "bonsai", "--data", "."), "(perhaps bonsai_256; `raytruth list volumes` names all)")
+        scene = {"volume": "bonsai", "camera": {}, "transfer_function": RAY["transfer_function"], "scheme": "reference"}
+        done = self.run_program("render", self.write("scene.json", scene), "-o", "i.npy", environment={"RAYTRUTH_DATA": ".:absent"})
+        self.assert_refused(done, "scene.json: /volume: bonsai: no such volume", "perhaps bonsai_256", "absent is no folder")
+
+    def test_list_of_volumes(self):
+        self.write("one.nrrd", HEADER + bytes(24))
+        self.write("two.nrrd", b"nonsense")
+        listed = [row for row in self.json_of("list", "volumes", "--json", "--data", ".") if row["file"].startswith("./")]
+        self.assertEqual(listed[0], {"name": "one", "summary": "NRRD, uint8, 2 x 3 x 4", "file": "./one.nrrd"})
+        self.assertTrue(listed[1]["summary"].startswith("cannot be read: ./two.nrrd: "))
+        self.assertIn("one", self.output_of("list", "volumes", environment={"RAYTRUTH_DATA": str(self.folder)}))
+
+    def test_folders_that_are_not_there_are_remarked_on(self):
+        self.write("v.nrrd", HEADER + bytes(24))
+        for arguments in (["info", "v.nrrd"], ["list", "volumes"], ["eval", self.write("case.json", RAY)]):
+            done = self.run_program(*arguments, "--data", "absent:.")
+            self.assertEqual((done.returncode, done.stderr), (0, b"raytruth: warning: --data: absent: there is no such folder\n"))
+        done = self.run_program("list", "volumes", environment={"RAYTRUTH_DATA": "gone"})
+        self.assertEqual((done.returncode, done.stderr), (0, b"raytruth: warning: RAYTRUTH_DATA: gone: there is no such folder\n"))
+
+    def test_spacing_that_is_asked_for(self):
+        self.write("v.nrrd", HEADER + bytes(24))
+        done = self.run_program("info", "v.nrrd", "--json", "--spacing", "0.5", "1", "2")
+        self.assertEqual(json.loads(done.stdout)["spacing"], [0.5, 1, 2])
+        self.assertIn(b"the file states the spacing 1 1 2; 0.5 1 2, which is asked for, is taken", done.stderr)
+        for wrong in (("1", "1"), ("1", "1", "0"), ("1", "1", "x")):
+            self.assert_refused(self.run_program("info", "v.nrrd", "--spacing", *wrong), "--spacing")
 
 
 class Streams(ProgramTest):
