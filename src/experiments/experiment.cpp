@@ -354,8 +354,8 @@ Experiment read_experiment(const std::string& path, std::string_view profile, st
   return experiment;
 }
 
-Field make_field(const FieldSource& source, const std::vector<std::filesystem::path>& folders) {
-  SourcedVolume volume = make_volume(source.document, folders);
+Field make_field(const FieldSource& source, const VolumeAccess& volumes) {
+  SourcedVolume volume = make_volume(source.document, volumes);
   if (volume.file.empty()) return {source.name, std::move(volume.grid), {0, 1}};
   const auto [low, high] = volume.grid.range();
   if (!std::isfinite(high - low))

@@ -85,8 +85,8 @@ bool uses_gl(const Experiment& experiment);
 Experiment read_experiment(const std::string& path, std::string_view profile, std::optional<std::int64_t> seed,
                            const std::optional<std::string>& gl);
 
-/// Makes a field, from its generator or its file found in `folders`. Throws VolumeAbsent where no folder holds it.
-Field make_field(const FieldSource& source, const std::vector<std::filesystem::path>& folders);
+/// Makes a field, from its generator or its file found by `volumes`. Throws VolumeAbsent where no folder holds it.
+Field make_field(const FieldSource& source, const VolumeAccess& volumes);
 
 /// The columns of a result: `measure`, `field`, those of the measures, `status` and `why`.
 std::vector<Column> result_columns(const Experiment& experiment);

@@ -1,7 +1,6 @@
 #include "experiments/journal.hpp"
 
 #include "experiments/output.hpp"
-#include "raytruth/core/error.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,15 @@
 namespace raytruth {
 
 using Json = nlohmann::ordered_json;
+
+namespace {
+
+[[noreturn]] void refuse_journal(const std::filesystem::path& file) {
+  throw OutputError(fmt::format("{}: cannot be written: {}; a place that can be written to is allowed", file.string(),
+                                std::generic_category().message(errno)));
+}
+
+}  // namespace
 
 Journal::Journal(const std::filesystem::path& result, const Json& run, bool resume)
     : file_(result.parent_path() / fmt::format(".{}.journal", result.stem().string())) {
@@ -34,7 +42,7 @@ Journal::Journal(const std::filesystem::path& result, const Json& run, bool resu
   }
   write_whole(file_, kept);
   stream_.reset(std::fopen(file_.c_str(), "ab"));
-  if (!stream_) throw InputError(fmt::format("{}: {}", file_.string(), std::generic_category().message(errno)));
+  if (!stream_) refuse_journal(file_);
 }
 
 const Json* Journal::find(const std::string& name) const {
@@ -47,8 +55,7 @@ bool Journal::is_empty() const { return parts_.empty(); }
 void Journal::add(const std::string& name, const Json& part) {
   if (!stream_) return;
   const std::string line = Json{{"name", name}, {"part", part}}.dump() + "\n";
-  if (std::fputs(line.c_str(), stream_.get()) < 0 || std::fflush(stream_.get()) != 0)
-    throw InputError(fmt::format("{}: {}", file_.string(), std::generic_category().message(errno)));
+  if (std::fputs(line.c_str(), stream_.get()) < 0 || std::fflush(stream_.get()) != 0) refuse_journal(file_);
 }
 
 void Journal::remove() {

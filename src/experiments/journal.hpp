@@ -22,7 +22,8 @@ class Journal {
   Journal() = default;
 
   /// Begins a journal for `result` that belongs to `run` (experiment and build), or goes on with the one that an
-  /// interrupted run left behind, if `resume` and it belongs to the same. Throws InputError where it cannot be written.
+  /// interrupted run left behind, if `resume` and it belongs to the same. Throws OutputError where it cannot be
+  /// written.
   Journal(const std::filesystem::path& result, const nlohmann::ordered_json& run, bool resume);
 
   /// The part of this name that was finished before; null where there is none.

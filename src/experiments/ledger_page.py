@@ -154,7 +154,10 @@ def main():
         commit=html.escape(document["provenance"]["commit"]),
         plots=json.dumps(plots),
     )
-    output.write_text(page, encoding="utf-8")
+    try:
+        output.write_text(page, encoding="utf-8")
+    except OSError as error:
+        sys.exit(error.strerror)
 
 
 main()

@@ -1,6 +1,5 @@
 #include "experiments/output.hpp"
 
-#include "raytruth/core/error.hpp"
 #include "raytruth/core/one_line.hpp"
 
 #include <fmt/format.h>
@@ -17,8 +16,8 @@ namespace raytruth {
 namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::error_code& error) {
-  throw InputError(fmt::format("{}: cannot be written: {}; a place that can be written to is allowed", file.string(),
-                               error.message()));
+  throw OutputError(one_line(fmt::format("{}: cannot be written: {}; a place that can be written to is allowed",
+                                         file.string(), error.message())));
 }
 
 std::error_code last_error() { return {errno, std::generic_category()}; }
@@ -52,18 +51,23 @@ void move_into_place(const std::filesystem::path& temporary, const std::filesyst
   refuse(file, error);
 }
 
-void write_whole(const std::filesystem::path& file, std::string_view text) {
-  const auto temporary = temporary_beside(file);
+void write_temporary(const std::filesystem::path& temporary, const std::filesystem::path& file, std::string_view text) {
   std::FILE* const stream = std::fopen(temporary.c_str(), "wb");
   if (stream == nullptr) refuse(file, last_error());
   const bool is_written = write_all(stream, text);
   const auto write_error = last_error();
   const bool is_closed = std::fclose(stream) == 0;
-  if (is_written && is_closed) return move_into_place(temporary, file);
+  if (is_written && is_closed) return;
   const auto error = is_written ? last_error() : write_error;
   std::error_code ignored;
   std::filesystem::remove(temporary, ignored);
   refuse(file, error);
+}
+
+void write_whole(const std::filesystem::path& file, std::string_view text) {
+  const auto temporary = temporary_beside(file);
+  write_temporary(temporary, file, text);
+  move_into_place(temporary, file);
 }
 
 void make_folder(const std::filesystem::path& folder) {

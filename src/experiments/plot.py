@@ -3,7 +3,7 @@
 The experiment inside a result says what to draw ("plot"); colours and markers of schemes come from its "styles".
 A kind of panel is a function in PANELS: it draws on axes, and returns its height in inches and its groups. A panel whose
 rows are not there says so. A plot that cannot be drawn stops no other: it leaves no OUTPUT, and a line on standard error,
-"cannot be drawn: RESULT: why".
+"cannot be drawn: RESULT: why"; one that cannot be written likewise, "cannot be written: RESULT: why".
 """
 
 import json
@@ -395,7 +395,13 @@ def main():
         try:
             with open(source, encoding="utf-8") as file:
                 result = json.load(file)
-            draw(result).savefig(output, format=file_format, dpi=200, metadata=metadata)
+            figure = draw(result)
+            try:
+                figure.savefig(output, format=file_format, dpi=200, metadata=metadata)
+            except OSError as error:
+                print(f"cannot be written: {source}: {error.strerror or error}".replace("\n", " "), file=sys.stderr, flush=True)
+                if os.path.exists(output):
+                    os.remove(output)
         except Exception as error:  # whatever it is, the other plots are drawn
             print(f"cannot be drawn: {source}: {type(error).__name__}: {error}".replace("\n", " "), file=sys.stderr, flush=True)
             if os.path.exists(output):

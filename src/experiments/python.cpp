@@ -1,5 +1,6 @@
 #include "experiments/python.hpp"
 
+#include "experiments/output.hpp"
 #include "raytruth/core/error.hpp"
 
 #include <fmt/format.h>
@@ -29,8 +30,8 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 File temporary_file(const std::string& text) {
   File file(std::tmpfile(), std::fclose);
   if (!file || std::fwrite(text.data(), 1, text.size(), file.get()) != text.size() || std::fflush(file.get()) != 0)
-    throw InputError(fmt::format("a temporary file: {}; a TMPDIR that can be written to is allowed",
-                                 std::generic_category().message(errno)));
+    throw OutputError(fmt::format("a temporary file: {}; a TMPDIR that can be written to is allowed",
+                                  std::generic_category().message(errno)));
   std::rewind(file.get());
   return file;
 }

@@ -132,6 +132,7 @@ Json describe(const Field& field) {
   Json json{{"size", field.grid.size}, {"data_min", field.data_range.first}, {"data_max", field.data_range.second}};
   if (!field.file.empty()) json["file"] = field.file;
   if (!field.file.empty()) json["repaired"] = field.repaired;
+  if (!field.warnings.empty()) json["warnings"] = field.warnings;
   return json;
 }
 

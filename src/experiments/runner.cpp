@@ -35,19 +35,18 @@ Row complete_row(std::string_view measure, const std::string& field, Row row, co
 /// A field, made when it is first asked for: an interrupted run may have finished with it.
 class LazyField {
  public:
-  LazyField(const FieldSource& source, const std::vector<std::filesystem::path>& folders)
-      : source_(source), folders_(folders) {}
+  LazyField(const FieldSource& source, const VolumeAccess& volumes) : source_(source), volumes_(volumes) {}
 
   /// Null where the field's volume is absent.
   const Field* get(RunObserver& observer) {
     if (field_ || is_absent()) return field_ ? &*field_ : nullptr;
     try {
-      field_ = make_field(source_, folders_);
+      field_ = make_field(source_, volumes_);
       for (const std::string& warning : field_->warnings) observer.warn(warning);
       return &*field_;
     } catch (const VolumeAbsent& error) {
-      why_absent_ = one_line(error.what());
-      observer.warn(fmt::format("warning: {}: refused: {}", source_.name, why_absent_));
+      why_absent_ = one_line(error.why);
+      observer.warn(fmt::format("warning: {}: refused: {}", source_.name, error.what()));
       return nullptr;
     }
   }
@@ -57,7 +56,7 @@ class LazyField {
 
  private:
   const FieldSource& source_;
-  const std::vector<std::filesystem::path>& folders_;
+  const VolumeAccess& volumes_;
   std::optional<Field> field_;
   std::string why_absent_;
 };
@@ -77,15 +76,14 @@ Json rows_json(const Measure& measure, const std::string& field, std::vector<Row
 /// The work of one experiment, unit by unit; a unit is a measure of one field, or a block of a measure alone.
 class UnitRunner {
  public:
-  UnitRunner(const Experiment& experiment, const std::vector<std::filesystem::path>& folders, Journal& journal,
-             RunObserver& observer)
-      : experiment_(experiment), folders_(folders), journal_(journal), observer_(observer) {
+  UnitRunner(const Experiment& experiment, const VolumeAccess& volumes, Journal& journal, RunObserver& observer)
+      : experiment_(experiment), volumes_(volumes), journal_(journal), observer_(observer) {
     observer_.begin(count_units(experiment));
   }
 
   Findings run_all() {
     for (const FieldSource& source : experiment_.fields) {
-      LazyField field(source, folders_);
+      LazyField field(source, volumes_);
       for_each_measure(true, [&](const AskedMeasure& asked) { run_field(asked, source, field); });
     }
     for_each_measure(true, [&](const AskedMeasure& asked) { add_conclusions(asked); });
@@ -158,7 +156,7 @@ class UnitRunner {
   }
 
   const Experiment& experiment_;
-  const std::vector<std::filesystem::path>& folders_;
+  const VolumeAccess& volumes_;
   Journal& journal_;
   RunObserver& observer_;
   Findings findings_;
@@ -194,7 +192,7 @@ Json run_experiment(const Experiment& experiment, const RunRequest& request, con
   const auto clock_start = std::chrono::steady_clock::now();
   Journal journal = file.empty() ? Journal() : Journal(file, run, request.resume);
   const bool is_resumed = !journal.is_empty();
-  const Findings findings = UnitRunner(experiment, request.folders, journal, observer).run_all();
+  const Findings findings = UnitRunner(experiment, request.volumes, journal, observer).run_all();
 
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock_start).count();
   const auto threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "experiments/experiment.hpp"
+#include "raytruth/documents/volume_source.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -33,9 +34,9 @@ class RunObserver {
 
 /// How an experiment is run.
 struct RunRequest {
-  std::string profile = "full";                ///< of the provenance
-  bool resume = false;                         ///< takes what an interrupted run of the same experiment and build left
-  std::vector<std::filesystem::path> folders;  ///< of volumes
+  std::string profile = "full";  ///< of the provenance
+  bool resume = false;           ///< takes what an interrupted run of the same experiment and build left
+  VolumeAccess volumes = {};
 };
 
 /// Does all units of the experiment, and keeps each in a journal beside `file` until the result is there. Returns the

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "raytruth/documents/volume_source.hpp"
+
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -14,6 +16,16 @@ class App;
 }
 
 namespace raytruth {
+
+/// What the options that concern volumes say.
+struct VolumeOptions {
+  std::string data;  ///< folders, separated by ':'
+  std::optional<double> nan;
+  std::optional<std::uint64_t> memory_limit;  ///< bytes
+};
+
+/// What they say, for whoever reads volumes. Remarks on folders of --data that are not there.
+VolumeAccess volume_access(const VolumeOptions& options);
 
 /// The options of a command as it describes them: where each value goes, what it is called and what it means. Parsing,
 /// --help and the refusal of other words follow. The places must live until the command has run.
@@ -48,7 +60,10 @@ class CommandOptions {
   // Options that several commands have.
 
   void threads(int& value);
-  void data(std::string& folders);
+  void data(VolumeOptions& volumes);
+  void nan(VolumeOptions& volumes);
+  void time_step(std::optional<std::int64_t>& value);
+  void spacing(std::vector<double>& value);
   void seed(std::int64_t& value, const std::string& summary);
   void seed(std::optional<std::int64_t>& value, const std::string& summary);
 
@@ -56,7 +71,8 @@ class CommandOptions {
   CLI::App& parser_;
 };
 
-/// What the program can be told to do: a row of `commands()`. It throws InputError (exit code 2) or MissingError (3).
+/// What the program can be told to do: a row of `commands()`. It throws InputError (exit code 2), MissingError (3) or
+/// OutputError (4).
 struct Command {
   std::string_view name;
   std::string_view summary;

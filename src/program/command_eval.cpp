@@ -3,7 +3,6 @@
 #include "raytruth/documents/case.hpp"
 #include "raytruth/documents/scene_case.hpp"
 #include "raytruth/documents/slab_case.hpp"
-#include "raytruth/volume/files/find_volume.hpp"
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -20,7 +19,7 @@ namespace {
 struct EvalOptions {
   std::string file;
   int threads = 0;
-  std::string data;
+  VolumeOptions volumes;
 };
 
 int evaluate_cases(const EvalOptions& options) {
@@ -28,19 +27,24 @@ int evaluate_cases(const EvalOptions& options) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
 
   const JsonReader document = JsonReader::from_file(options.file);
-  CaseReader reader(volume_folders(options.data));
+  const VolumeAccess volumes = volume_access(options.volumes);
+  CaseReader reader(volumes);
   std::vector<std::string> warnings;
+  std::vector<std::size_t> first_warnings;  // of each case
   std::vector<std::variant<Case, SlabCase, SceneFile>> cases;
-  for (const JsonReader& item : document.is_array() ? document.items() : std::vector{document})
+  for (const JsonReader& item : document.is_array() ? document.items() : std::vector{document}) {
+    first_warnings.push_back(warnings.size());
     if (is_slab_case(item)) {
       cases.emplace_back(read_slab_case(item, warnings));
     } else if (is_scene_case(item)) {
-      SceneFile scene = read_scene(item, {.folders = volume_folders(options.data), .opacity = {}});
+      SceneFile scene = read_scene(item, {.volumes = volumes, .opacity = {}});
       warnings.insert(warnings.end(), scene.warnings.begin(), scene.warnings.end());
       cases.emplace_back(std::move(scene));
     } else {
       cases.emplace_back(reader.read(item, warnings));
     }
+  }
+  first_warnings.push_back(warnings.size());
   for (const std::string& warning : warnings) say(warning);
 
   std::vector<nlohmann::ordered_json> answers(cases.size());
@@ -48,6 +52,8 @@ int evaluate_cases(const EvalOptions& options) {
   tbb::parallel_for(std::size_t{0}, cases.size(), [&](std::size_t i) {
     try {
       answers[i] = std::visit([](const auto& asked) { return evaluate(asked); }, cases[i]);
+      for (std::size_t warning = first_warnings[i]; warning < first_warnings[i + 1]; ++warning)
+        answers[i]["warnings"].push_back(warnings[warning]);
     } catch (const InputError& error) {
       errors[i] = error.what();
     }
@@ -63,7 +69,8 @@ std::function<int()> describe(CommandOptions& add) {
   const auto options = std::make_shared<EvalOptions>();
   add.operand("case", options->file, "JSON file; '-' is standard input");
   add.threads(options->threads);
-  add.data(options->data);
+  add.data(options->volumes);
+  add.nan(options->volumes);
   return [options] { return evaluate_cases(*options); };
 }
 

@@ -16,7 +16,9 @@ namespace {
 struct InfoOptions {
   std::string volume;
   bool json = false;
-  std::string data;
+  VolumeOptions volumes;
+  std::optional<std::int64_t> time_step;
+  std::vector<double> spacing;  ///< empty: the file's
 };
 
 using Json = nlohmann::ordered_json;
@@ -32,6 +34,7 @@ Json description_json(const VolumeDescription& volume) {
             {"intercept", volume.intercept},
             {"size", volume.size},
             {"spacing", volume.spacing},
+            {"has_spacing", volume.has_spacing},
             {"minimum", volume.minimum},
             {"maximum", volume.maximum},
             {"levels", volume.levels},
@@ -39,7 +42,8 @@ Json description_json(const VolumeDescription& volume) {
             {"share_at_minimum", volume.share_at_minimum},
             {"share_of_zeros", volume.share_of_zeros},
             {"constant_layers", volume.constant_layers},
-            {"lost_first_byte", volume.lost_first_byte}};
+            {"lost_first_byte", volume.lost_first_byte},
+            {"warnings", volume.warnings}};
   if (volume.possible_levels) json["possible_levels"] = *volume.possible_levels;
   return json;
 }
@@ -56,7 +60,8 @@ std::string description_text(const VolumeDescription& volume) {
   line("format", fmt::format("{}, {}, {}{}", volume.format, volume.type, volume.encoding,
                              volume.endian == "none" ? "" : fmt::format(", {} endian", volume.endian)));
   line("size", fmt::format("{}", fmt::join(volume.size, " ")));
-  line("spacing", fmt::format("{}", fmt::join(volume.spacing, " ")));
+  line("spacing",
+       fmt::format("{}{}", fmt::join(volume.spacing, " "), volume.has_spacing ? "" : " (the file states none)"));
   if (volume.slope != 1 || volume.intercept != 0)
     line("physical value", fmt::format("{} * stored + {}", volume.slope, volume.intercept));
   line("range", fmt::format("{} .. {}", volume.minimum, volume.maximum));
@@ -70,8 +75,12 @@ std::string description_text(const VolumeDescription& volume) {
 }
 
 int show_volume(const InfoOptions& options) {
-  const auto description = describe_volume(read_volume(find_volume(options.volume, volume_folders(options.data))));
-  if (description.lost_first_byte) say(lost_first_byte_warning(description.file));
+  const VolumeAccess access = volume_access(options.volumes);
+  VolumeChoices choices{.nan = access.nan, .time_step = options.time_step};
+  if (!options.spacing.empty()) choices.spacing = {options.spacing[0], options.spacing[1], options.spacing[2]};
+  const Volume volume = read_volume(find_volume(options.volume, access.folders), choices, access.memory_limit);
+  for (const std::string& warning : warnings_of(volume, volume.file.string())) say(warning);
+  const auto description = describe_volume(volume);
   print(options.json ? description_json(description).dump(2) + "\n" : description_text(description));
   return 0;
 }
@@ -80,17 +89,30 @@ std::function<int()> describe(CommandOptions& add) {
   const auto options = std::make_shared<InfoOptions>();
   add.operand("volume", options->volume, "File, or name in the data folders");
   add.flag("--json", options->json, "As JSON");
-  add.data(options->data);
+  add.data(options->volumes);
+  add.nan(options->volumes);
+  add.time_step(options->time_step);
+  add.spacing(options->spacing);
   return [options] { return show_volume(*options); };
 }
 
 }  // namespace
 
 extern const Command info_command;
-const Command info_command{.name = "info",
-                           .summary = "Describe a volume: header, range, levels in use, signs of damage",
-                           .example = "raytruth info ch2.nii.gz",
-                           .notes = "",
-                           .describe = describe};
+const Command info_command{
+    .name = "info",
+    .summary = "Describe a volume: header, range, levels in use, signs of damage",
+    .example = "raytruth info ch2.nii.gz",
+    .notes =
+        "Volumes are NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz, .hdr) and NumPy arrays (.npy); `raytruth list\n"
+        "volumes` names those in the data folders. Every other format comes in by NumPy: an array of the shape\n"
+        "(z, y, x), of integers or of float32 or float64, as\n"
+        "  numpy.save(\"head.npy\", array)      # array[z, y, x]\n"
+        "  raytruth info head.npy --spacing 0.5 0.5 1.2      # x y z\n"
+        "and in a scene, a case or an experiment\n"
+        "  \"volume\": \"head.npy\", \"spacing\": [0.5, 0.5, 1.2]\n"
+        "Beside \"volume\" there may also stand \"nan\": VALUE, for voxels that are NaN, and \"time_step\": N, for\n"
+        "one volume of a series, from 0.",
+    .describe = describe};
 
 }  // namespace raytruth

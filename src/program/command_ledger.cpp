@@ -51,7 +51,7 @@ void write_page(const fs::path& ledger, const fs::path& page, const std::string&
   std::error_code ignored;
   if (outcome.status == 0) return move_into_place(temporary, page);
   fs::remove(temporary, ignored);
-  throw InputError(fmt::format("{}: cannot be written: {}", page.string(), outcome.last_error()));
+  throw OutputError(fmt::format("{}: cannot be written: {}", page.string(), outcome.last_error()));
 }
 
 int keep_ledger(const LedgerOptions& options) {

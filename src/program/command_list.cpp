@@ -5,8 +5,11 @@
 #include "raytruth/catalogue.hpp"
 #include "raytruth/core/named.hpp"
 #include "raytruth/shading/slab_shading.hpp"
+#include "raytruth/volume/files/find_volume.hpp"
+#include "raytruth/volume/files/stored_volume.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -21,6 +24,7 @@ struct ListOptions {
   std::string kind;  ///< empty: all
   bool json = false;
   bool schema = false;
+  VolumeOptions volumes;
 };
 
 using Json = nlohmann::ordered_json;
@@ -58,6 +62,25 @@ Json experiments_json() {
   return list;
 }
 
+/// What a volume's header says of it, in a few words.
+std::string summary_of(const std::filesystem::path& file) {
+  try {
+    const StoredVolume stored = read_volume_header(file, {.time_step = 0});
+    const auto& volume = stored.volume;
+    return fmt::format("{}, {}, {}{}", volume.format, facts(volume.type).name, fmt::join(volume.grid.size, " x "),
+                       stored.series.count > 1 ? fmt::format(", a series of {}", stored.series.count) : "");
+  } catch (const InputError& error) {
+    return fmt::format("cannot be read: {}", error.what());
+  }
+}
+
+Json volumes_json(const std::vector<std::filesystem::path>& folders) {
+  Json list = Json::array();
+  for (const auto& [name, file] : volumes_in(folders))
+    list.push_back({{"name", name}, {"summary", summary_of(file)}, {"file", file.string()}});
+  return list;
+}
+
 Json words_json(const std::vector<std::string_view>& words) { return {{"enum", words}}; }
 
 /// The names of the measures for which `is_asked` holds.
@@ -77,7 +100,7 @@ Json schema_of_names() {
     return Json{{"oneOf", list}};
   };
   return {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-              {"title", "The names that the program knows, as `raytruth list --schema` writes them"},
+          {"title", "The names that the program knows, as `raytruth list --schema` writes them"},
           {"$defs",
            {{"scheme", words_json(names_of(catalogue::integral_schemes()))},
             {"signal_scheme", words_json(catalogue::scheme_names())},
@@ -102,7 +125,7 @@ Json tables_json() {
   return list;
 }
 
-Json list_of(const std::string& kind) {
+Json list_of(const std::string& kind, const std::vector<std::filesystem::path>& folders) {
   if (kind == "signals") return entries_json(catalogue::signals);
   if (kind == "fields") return entries_json(catalogue::fields);
   if (kind == "transfers") return entries_json(catalogue::transfers);
@@ -112,11 +135,12 @@ Json list_of(const std::string& kind) {
   if (kind == "shadings") return entries_json(catalogue::shadings());
   if (kind == "tables") return tables_json();
   if (kind == "experiments") return experiments_json();
+  if (kind == "volumes") return volumes_json(folders);
   return Json::array();
 }
 
-std::string text_of(const std::string& kind) {
-  const Json list = list_of(kind);
+std::string text_of(const std::string& kind, const std::vector<std::filesystem::path>& folders) {
+  const Json list = list_of(kind, folders);
   std::size_t width = 0;
   for (const Json& entry : list) width = std::max(width, entry.at("name").get_ref<const std::string&>().size());
   // Where experiments are found depends on the folder that the program runs in.
@@ -132,8 +156,8 @@ std::string text_of(const std::string& kind) {
 }
 
 const std::vector<std::string>& listed_kinds() {
-  static const std::vector<std::string> kinds{"signals",  "fields",   "transfers", "samplings",  "schemes",
-                                              "measures", "shadings", "tables",    "experiments"};
+  static const std::vector<std::string> kinds{"signals",  "fields",   "transfers", "samplings",   "schemes",
+                                              "measures", "shadings", "tables",    "experiments", "volumes"};
   return kinds;
 }
 
@@ -142,14 +166,18 @@ int list_ingredients(const ListOptions& options) {
     print(schema_of_names().dump(2) + "\n");
     return 0;
   }
+  const auto folders = volume_access(options.volumes).folders;
+  if (options.kind == "volumes")
+    for (const auto& folder : absent_folders(folders_of_environment()))
+      say(fmt::format("warning: RAYTRUTH_DATA: {}: there is no such folder", folder.string()));
   if (options.json) {
     Json all = Json::object();
-    for (const std::string& kind : listed_kinds()) all[kind] = list_of(kind);
+    for (const std::string& kind : listed_kinds()) all[kind] = list_of(kind, folders);
     print((options.kind.empty() ? all : all.at(options.kind)).dump(2) + "\n");
     return 0;
   }
   for (const std::string& kind : options.kind.empty() ? listed_kinds() : std::vector{options.kind})
-    print(text_of(kind));
+    print(text_of(kind, folders));
   return 0;
 }
 
@@ -157,6 +185,7 @@ std::function<int()> describe(CommandOptions& add) {
   const auto options = std::make_shared<ListOptions>();
   add.optional_operand("kind", options->kind, listed_kinds(), "Of what (default: everything)");
   add.flag("--json", options->json, "As JSON");
+  add.data(options->volumes);
   add.flag("--schema", options->schema, "Write the names as experiments/schemas/names.json has them");
   return [options] { return list_ingredients(*options); };
 }

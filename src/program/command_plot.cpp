@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -47,16 +49,23 @@ std::vector<Drawing> drawings_of(const PlotOptions& options) {
   return drawings;
 }
 
-/// What the script says of a plot that it could not draw.
-std::string why_not_drawn(const std::string& result, const PythonOutcome& outcome) {
-  const std::string begin = fmt::format("cannot be drawn: {}: ", result);
+/// What the script says that it could not do of a plot ("drawn" or "written"), and why; nothing where it could.
+std::optional<std::string> why_not(std::string_view done, const std::string& result, const PythonOutcome& outcome) {
+  const std::string begin = fmt::format("cannot be {}: {}: ", done, result);
   const auto line = std::find_if(outcome.errors.begin(), outcome.errors.end(),
                                  [&begin](const std::string& error) { return error.starts_with(begin); });
-  return one_line(line == outcome.errors.end() ? outcome.last_error() : line->substr(begin.size()));
+  if (line == outcome.errors.end()) return std::nullopt;
+  return one_line(line->substr(begin.size()));
 }
 
-/// Draws them; returns how many there are now, and says why the others are not.
-std::size_t draw(const std::vector<Drawing>& drawings, const std::string& format) {
+/// How many plots there are now, and how many there would be if they could be written.
+struct Drawn {
+  std::size_t drawn = 0;
+  std::size_t unwritten = 0;
+};
+
+/// Draws them, and says why some are not there.
+Drawn draw(const std::vector<Drawing>& drawings, const std::string& format) {
   std::vector<std::string> arguments{format};
   for (const Drawing& drawing : drawings) {
     arguments.push_back(drawing.result);
@@ -68,22 +77,33 @@ std::size_t draw(const std::vector<Drawing>& drawings, const std::string& format
     throw MissingError(
         fmt::format("python cannot import matplotlib ({}); install python3-matplotlib", outcome.last_error()));
   std::error_code ignored;
-  std::size_t drawn = 0;
+  Drawn result;
   // Where Python itself broke off, a file may be half a plot: then each is drawn alone.
   if (outcome.status != 0 && drawings.size() > 1) {
-    for (const Drawing& drawing : drawings) drawn += draw({drawing}, format);
-    return drawn;
+    for (const Drawing& drawing : drawings) {
+      const Drawn one = draw({drawing}, format);
+      result.drawn += one.drawn;
+      result.unwritten += one.unwritten;
+    }
+    return result;
   }
   for (const Drawing& drawing : drawings) {
     if (outcome.status == 0 && std::filesystem::exists(drawing.temporary, ignored)) {
       move_into_place(drawing.temporary, drawing.file);
-      ++drawn;
+      ++result.drawn;
       continue;
     }
     std::filesystem::remove(drawing.temporary, ignored);
-    say(fmt::format("{}: cannot be plotted: {}", drawing.result, why_not_drawn(drawing.result, outcome)));
+    if (const auto why = why_not("written", drawing.result, outcome)) {
+      ++result.unwritten;
+      say(fmt::format("{}: cannot be written: {}; a place that can be written to is allowed", drawing.file.string(),
+                      *why));
+    } else {
+      say(fmt::format("{}: cannot be plotted: {}", drawing.result,
+                      why_not("drawn", drawing.result, outcome).value_or(one_line(outcome.last_error()))));
+    }
   }
-  return drawn;
+  return result;
 }
 
 int plot_results(const PlotOptions& options) {
@@ -91,7 +111,10 @@ int plot_results(const PlotOptions& options) {
   if (drawings.empty()) return 0;
   make_folder(options.folder);
   constexpr int bad_input = 2;
-  return draw(drawings, options.format) > 0 ? 0 : bad_input;
+  constexpr int not_written = 4;
+  const Drawn result = draw(drawings, options.format);
+  if (result.unwritten > 0) return not_written;
+  return result.drawn > 0 ? 0 : bad_input;
 }
 
 std::function<int()> describe(CommandOptions& add) {

@@ -7,7 +7,6 @@
 #include "raytruth/documents/scene_document.hpp"
 #include "raytruth/images/image_file.hpp"
 #include "raytruth/render/renderer.hpp"
-#include "raytruth/volume/files/find_volume.hpp"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -28,7 +27,7 @@ struct RenderOptions {
   bool is_binary64 = false;            ///< a .npy holds binary64
   std::optional<std::string> opacity;  ///< a transfer function's file, whose opacities are taken
   bool ignores_gradient_opacity = false;
-  std::string data;
+  VolumeOptions volumes;
 };
 
 /// Renders, telling on a terminal how far it is.
@@ -82,7 +81,7 @@ int render_scene(const RenderOptions& options) {
   image_file(Image({1, 1}), file.extension().string(), transfer);  // refuses the name before anything is rendered
 
   const JsonReader json = JsonReader::from_file(options.scene);
-  SceneFile scene = read_scene(json, {.folders = volume_folders(options.data),
+  SceneFile scene = read_scene(json, {.volumes = volume_access(options.volumes),
                                       .opacity = options.opacity,
                                       .ignores_gradient_opacity = options.ignores_gradient_opacity});
   for (const std::string& warning : scene.warnings) say(warning);
@@ -115,7 +114,8 @@ std::function<int()> describe(CommandOptions& add) {
            "Take the opacities of this transfer function, for colour maps without");
   add.flag("--ignore-gradient-opacity", options->ignores_gradient_opacity,
            "Accept transfer functions whose opacity depends on the gradient, and leave that out");
-  add.data(options->data);
+  add.data(options->volumes);
+  add.nan(options->volumes);
   return [options] { return render_scene(*options); };
 }
 

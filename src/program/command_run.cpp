@@ -5,7 +5,6 @@
 #include "program/command.hpp"
 #include "program/progress_bar.hpp"
 #include "raytruth/core/one_line.hpp"
-#include "raytruth/volume/files/find_volume.hpp"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -33,7 +32,7 @@ struct RunOptions {
   std::optional<std::string> gl;
   bool check = false;
   bool resume = false;
-  std::string data;
+  VolumeOptions volumes;
 };
 
 /// A bar of what is done.
@@ -103,7 +102,8 @@ std::string notice(const RunOptions& options) {
   if (options.seed) command += fmt::format(" --seed {}", *options.seed);
   if (options.gl) command += " --gl " + *options.gl;
   if (options.threads > 0) command += fmt::format(" -j {}", options.threads);
-  if (!options.data.empty()) command += " --data " + options.data;
+  if (!options.volumes.data.empty()) command += " --data " + options.volumes.data;
+  if (options.volumes.memory_limit) command += fmt::format(" --memory-limit {}", *options.volumes.memory_limit);
   if (options.check) command += " --check";
   command += fmt::format(" -o {} --resume", *options.folder);
   return fmt::format("\nraytruth: interrupted; what is done is kept, and this goes on with it: {}\n",
@@ -150,7 +150,7 @@ int run_experiments(const RunOptions& options) {
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const RunRequest request{
-      .profile = options.profile, .resume = options.resume, .folders = volume_folders(options.data)};
+      .profile = options.profile, .resume = options.resume, .volumes = volume_access(options.volumes)};
   const auto run = [&request](const Experiment& experiment, const std::filesystem::path& file) {
     BarObserver observer;
     return run_experiment(experiment, request, file, observer);
@@ -178,7 +178,7 @@ std::function<int()> describe(CommandOptions& add) {
            "Run shaders by osmesa or by egl, a GPU's driver (default: the experiment's)");
   add.flag("--check", options->check, "Exit with 1 if a bound that the experiment states does not hold");
   add.flag("--resume", options->resume, "Finish an interrupted run; needs -o");
-  add.data(options->data);
+  add.data(options->volumes);
   return [options] { return run_experiments(*options); };
 }
 

@@ -50,7 +50,9 @@ std::vector<ScoredVector> read_vectors(const std::string& path) {
 
 /// Gives the vectors their answers.
 void take_answers(std::vector<ScoredVector>& vectors, const ScoreOptions& options) {
-  auto answers = read_answers(options.answers);
+  std::vector<std::string> warnings;
+  auto answers = read_answers(options.answers, warnings);
+  for (const std::string& warning : warnings) say(warning);
   std::vector<std::string> missing;
   for (ScoredVector& vector : vectors) {
     const auto answer = answers.extract(vector.id);
@@ -124,7 +126,8 @@ const Command score_command{
         "error is that of its worst channel, its scale the largest channel of the certified colour; the\n"
         "opacity's scale is the certified opacity. Errors below the certified error_bound, or 2^-53 of the\n"
         "scale, count as that much; errors above the scale have no digits, nor has a vector without an\n"
-        "answer. Ids that are not in the vectors are refused.",
+        "answer, or whose answer is not finite. Ids that are not in the vectors are refused. Semicolons between\n"
+        "fields, and decimal commas with them, are read as spreadsheets write them.",
     .describe = describe};
 
 }  // namespace raytruth

@@ -70,7 +70,7 @@ int write_table(const TableOptions& options) {
 
   // Both files or none: the table waits beside its place until its description is written.
   const std::filesystem::path temporary = temporary_beside(file);
-  write_whole(temporary, make_bytes(table.shape, table.values, asked.format));
+  write_temporary(temporary, file, make_bytes(table.shape, table.values, asked.format));
   try {
     write_whole(file.string() + ".json", description(asked, table, file).dump(2) + "\n");
   } catch (...) {

@@ -3,11 +3,13 @@
 #include "program/command.hpp"
 #include "raytruth/core/error.hpp"
 #include "raytruth/core/one_line.hpp"
+#include "raytruth/volume/files/find_volume.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <csignal>
 #include <exception>
 #include <functional>
@@ -21,6 +23,7 @@ namespace {
 
 constexpr int bad_input = 2;
 constexpr int missing = 3;
+constexpr int not_written = 4;
 constexpr int most_threads = 9999;
 
 CLI::Range any_seed() { return {std::int64_t{0}, std::numeric_limits<std::int64_t>::max()}; }
@@ -31,7 +34,10 @@ class CommandLine {
   CommandLine() {
     program_.require_subcommand(1);
     program_.set_version_flag("--version", fmt::format("raytruth {} ({})", version, commit));
-    program_.footer("Exit codes: 0 done; 1 a bound does not hold (--check); 2 bad input; 3 something is missing here.");
+    program_.footer(
+        "Exit codes: 0 done; 1 a bound does not hold (--check); 2 bad input; 3 something is missing here;\n4 the "
+        "answer "
+        "could not be written.");
     for (const Command* command : commands()) add(*command);
   }
 
@@ -85,6 +91,9 @@ int run_program(int argc, char** argv) {
   } catch (const MissingError& error) {
     say(error.what());
     return missing;
+  } catch (const OutputError& error) {
+    say(error.what());
+    return not_written;
   } catch (const std::bad_alloc&) {
     say("this needs more memory than the machine has");
     return missing;
@@ -153,9 +162,46 @@ void CommandOptions::threads(int& value) {
       ->check(CLI::Range(1, most_threads));
 }
 
-void CommandOptions::data(std::string& folders) {
-  parser_.add_option("--data", folders, "Folders of volumes, separated by ':'; before those of RAYTRUTH_DATA")
+void CommandOptions::data(VolumeOptions& volumes) {
+  parser_.add_option("--data", volumes.data, "Folders of volumes, separated by ':'; before those of RAYTRUTH_DATA")
       ->type_name("DIR");
+  parser_
+      .add_option(
+          "--memory-limit", volumes.memory_limit,
+          "Refuse volumes whose voxels need more, as 64MiB or 8G; 8 bytes each (default: this machine's memory)")
+      ->type_name("SIZE")
+      ->envname("RAYTRUTH_MEMORY_LIMIT")
+      ->transform(CLI::Validator(CLI::AsSizeValue(false)).description(""));
+}
+
+void CommandOptions::nan(VolumeOptions& volumes) {
+  parser_
+      .add_option("--nan", volumes.nan,
+                  "Give voxels of files that are NaN this value (default: such files are refused)")
+      ->type_name("VALUE");
+}
+
+void CommandOptions::time_step(std::optional<std::int64_t>& value) {
+  parser_.add_option("--time-step", value, "Read this volume of a series, from 0 (default: series are refused)")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
+}
+
+void CommandOptions::spacing(std::vector<double>& value) {
+  parser_.add_option("--spacing", value, "Distances of voxels along x, y and z, instead of the file's")
+      ->type_name("X")
+      ->expected(3)
+      ->check(CLI::PositiveNumber);
+}
+
+VolumeAccess volume_access(const VolumeOptions& options) {
+  if (options.nan && !std::isfinite(*options.nan))
+    throw InputError(fmt::format("command line: --nan: found {}; a finite number is allowed", *options.nan));
+  for (const auto& folder : absent_folders(folders_in(options.data)))
+    say(fmt::format("warning: --data: {}: there is no such folder", folder.string()));
+  VolumeAccess access{.folders = volume_folders(options.data), .nan = options.nan};
+  if (options.memory_limit) access.memory_limit = *options.memory_limit;
+  return access;
 }
 
 void CommandOptions::seed(std::int64_t& value, const std::string& summary) {

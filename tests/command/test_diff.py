@@ -1,5 +1,6 @@
 """`raytruth diff`: what changed between two results, beyond both radii."""
 
+import json
 import unittest
 
 from support import EXPERIMENT, ProgramTest, changed
@@ -41,6 +42,22 @@ class Differences(ProgramTest):
         self.assertEqual(len(differences["removed"]), 1)
         self.assertEqual(differences["removed"][0]["scheme"], "order0_mid")
         self.assertEqual((differences["added"], differences["changed"]), ([], []))
+
+    def test_experiments_that_are_not_the_same(self):
+        other = changed(changed(self.result, "/experiment/name", "other"), "/experiment/rays/count", 7)
+        self.write("other.json", other)
+        done = self.run_program("diff", "before.json", "other.json", "--json")
+        self.assertEqual(done.stderr, b"raytruth: warning: these are results of different experiments: before.json of small, other.json of other\n")
+        self.assertEqual(json.loads(done.stdout)["experiment"], [{"place": "/name", "before": "small", "after": "other"},
+                                                                 {"place": "/rays/count", "before": 64, "after": 7}])
+        longer = changed(self.result, "/experiment/plot/title", "x" * 1000)
+        self.write("longer.json", longer)
+        done = self.run_program("diff", "before.json", "longer.json", "--check")
+        self.assertEqual((done.returncode, done.stderr), (0, b""))
+        said, nothing = done.stdout.decode().splitlines()
+        self.assertTrue(said.startswith('experiment /plot/title: "small" -> "xxx'))
+        self.assertLess(len(said), 200)
+        self.assertEqual(nothing, "nothing changed beyond both radii")
 
     def test_verdicts_and_checks(self):
         after = changed(self.result, "/published/0/verdict", "contradicted")

@@ -1,10 +1,11 @@
 """`raytruth` itself: help, lists, volumes, streams, and plots where matplotlib is missing."""
 
+import json
 import os
 import subprocess
 import unittest
 
-from support import EXPERIMENT, PROGRAM, RAY, ProgramTest, changed
+from support import EXPERIMENT, PROGRAM, RAY, SOURCE, ProgramTest, changed
 
 COMMANDS = ["run", "list", "eval", "render", "compare", "plot", "diff", "info", "vectors", "score"]
 HEADER = b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 3 4\nencoding: raw\nspacings: 1 1 2\n\n"
@@ -26,7 +27,7 @@ class Help(ProgramTest):
 
 
 class Lists(ProgramTest):
-    kinds = ["signals", "fields", "transfers", "samplings", "schemes", "measures", "shadings", "tables", "experiments"]
+    kinds = ["signals", "fields", "transfers", "samplings", "schemes", "measures", "shadings", "tables", "experiments", "volumes"]
 
     def test_everything(self):
         everything = self.json_of("list", "--json")
@@ -75,7 +76,41 @@ class Volumes(ProgramTest):
         self.write("v.nrrd", HEADER.replace(b"2 3 4", b"1048576 1048576 1") + bytes(23))
         self.assert_refused(self.run_program("info", "v.nrrd"), "v.nrrd")
         self.write("v.txt", b"")
-        self.assert_refused(self.run_program("info", "./v.txt"), "v.txt")
+        for name in ("./v.txt", "v.txt"):
+            self.assert_refused(self.run_program("info", name), "v.txt: neither the name nor the first bytes tell the format; .nrrd, ")
+        for name in ("./absent.nrrd", "absent.nrrd"):
+            self.assert_refused(self.run_program("info", name), f"{name}: no such file here, and no such volume in the data folders")
+
+    def test_names_that_are_nearly_those_of_volumes(self):
+        self.write("bonsai_256.nrrd", HEADER + bytes(24))
+        self.assert_refused(self.run_program("info", "bonsai", "--data", "."), "(perhaps bonsai_256; `raytruth list volumes` names all)")
+        scene = {"volume": "bonsai", "camera": {}, "transfer_function": RAY["transfer_function"], "scheme": "reference"}
+        done = self.run_program("render", self.write("scene.json", scene), "-o", "i.npy", environment={"RAYTRUTH_DATA": ".:absent"})
+        self.assert_refused(done, "scene.json: /volume: bonsai: no such volume", "perhaps bonsai_256", "absent is no folder")
+
+    def test_list_of_volumes(self):
+        self.write("one.nrrd", HEADER + bytes(24))
+        self.write("two.nrrd", b"nonsense")
+        listed = [row for row in self.json_of("list", "volumes", "--json", "--data", ".") if row["file"].startswith("./")]
+        self.assertEqual(listed[0], {"name": "one", "summary": "NRRD, uint8, 2 x 3 x 4", "file": "./one.nrrd"})
+        self.assertTrue(listed[1]["summary"].startswith("cannot be read: ./two.nrrd: "))
+        self.assertIn("one", self.output_of("list", "volumes", environment={"RAYTRUTH_DATA": str(self.folder)}))
+
+    def test_folders_that_are_not_there_are_remarked_on(self):
+        self.write("v.nrrd", HEADER + bytes(24))
+        for arguments in (["info", "v.nrrd"], ["list", "volumes"], ["eval", self.write("case.json", RAY)]):
+            done = self.run_program(*arguments, "--data", "absent:.")
+            self.assertEqual((done.returncode, done.stderr), (0, b"raytruth: warning: --data: absent: there is no such folder\n"))
+        done = self.run_program("list", "volumes", environment={"RAYTRUTH_DATA": "gone"})
+        self.assertEqual((done.returncode, done.stderr), (0, b"raytruth: warning: RAYTRUTH_DATA: gone: there is no such folder\n"))
+
+    def test_spacing_that_is_asked_for(self):
+        self.write("v.nrrd", HEADER + bytes(24))
+        done = self.run_program("info", "v.nrrd", "--json", "--spacing", "0.5", "1", "2")
+        self.assertEqual(json.loads(done.stdout)["spacing"], [0.5, 1, 2])
+        self.assertIn(b"the file states the spacing 1 1 2; 0.5 1 2, which is asked for, is taken", done.stderr)
+        for wrong in (("1", "1"), ("1", "1", "0"), ("1", "1", "x")):
+            self.assert_refused(self.run_program("info", "v.nrrd", "--spacing", *wrong), "--spacing")
 
 
 class Streams(ProgramTest):
@@ -93,8 +128,37 @@ class Streams(ProgramTest):
         for arguments in (["list"], ["--help"], ["eval", self.write("case.json", RAY)]):
             with open("/dev/full", "wb") as full:
                 done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, stdout=full, stderr=subprocess.PIPE)
-            self.assertEqual(done.returncode, 2)
+            self.assertEqual(done.returncode, 4)
             self.assertEqual(done.stderr.count(b"\n"), 1)
+
+    def test_what_cannot_be_written_is_no_bad_input(self):
+        """Exit code 4, and the name that was asked for, whatever is written beside it first."""
+        self.write("case.json", RAY)
+        scene = {"volume": {"kind": "random_field", "size": 8, "smoothing": 1}, "transfer_function": RAY["transfer_function"], "scheme": "reference",
+                 "camera": {"eye": [30, 4, 4], "target": [3.5, 3.5, 3.5], "up": [0, 1, 0], "height": 8, "size": [4, 4]}}
+        table = {"transfer_function": RAY["transfer_function"], "builder": "exact", "size": 8, "length": 1, "range": [0, 1], "format": "float32"}
+        result = self.write("small.json", self.json_of("run", self.write("experiment.json", EXPERIMENT)))
+        self.write("file", b"")
+        for folder, why in (("absent/", "No such file or directory"), ("file/", "Not a directory")):
+            for file, arguments in (("v.json", ("vectors", "-o")), ("i.npy", ("render", self.write("scene.json", scene), "-o")),
+                                    ("t.npy", ("table", self.write("table.json", table), "-o")), ("l.json", ("ledger", result, "-o"))):
+                with self.subTest(file=folder + file):
+                    self.assert_refused(self.run_program(*arguments, folder + file), f"{folder}{file}: cannot be written: {why}", code=4)
+        for arguments in (("run", "experiment.json"), ("plot", result)):
+            self.assert_refused(self.run_program(*arguments, "-o", "file/out"), "file/out: cannot be written", code=4)
+
+    def test_a_disk_that_fills_up(self):
+        """Files of at most 24 KiB stand for it: exit code 4, the name that was asked for, and nothing half written."""
+        table = {"transfer_function": RAY["transfer_function"], "builder": "exact", "size": 128, "length": 1, "range": [0, 1], "format": "float32"}
+        self.write("table.json", table)
+        limited = ["bash", "-c", 'trap "" XFSZ; ulimit -f 24; exec "$0" "$@"', PROGRAM]
+        for file, arguments in (("v.json", ["vectors", "-o", "v.json"]), ("t.npy", ["table", "table.json", "-o", "t.npy"]),
+                                ("./clamps.svg", ["plot", SOURCE / "results/clamps.json"])):
+            with self.subTest(file=file):
+                before = self.names_in_folder()
+                done = subprocess.run([*limited, *arguments], cwd=self.folder, capture_output=True, timeout=300)
+                self.assert_refused(done, f"raytruth: {file}: cannot be written: File too large", code=4)
+                self.assertEqual(self.names_in_folder(), before)
 
     def test_case_from_a_pipe(self):
         read = subprocess.run(["bash", "-c", '"$0" eval <(cat)', PROGRAM], input=str(RAY).replace("'", '"').encode(),

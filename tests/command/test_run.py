@@ -221,10 +221,10 @@ class Files(ProgramTest):
         self.assert_refused(self.run_program("run", "small.json", "-o", "."), "small.json", "another folder")
 
     def test_output_that_cannot_be_written(self):
-        self.assert_refused(self.run_program("run", "small.json", "-o", "small.json"), "small.json")
+        self.assert_refused(self.run_program("run", "small.json", "-o", "small.json"), "small.json", code=4)
         self.assert_refused(self.run_program("run", "small.json", "-o", "/proc/out"), "/proc/out")
         full = subprocess.run([PROGRAM, "run", "small.json"], cwd=self.folder, stdout=open("/dev/full", "wb"), stderr=subprocess.PIPE)
-        self.assertEqual(full.returncode, 2)
+        self.assertEqual(full.returncode, 4)
         self.assertIn(b"standard output", full.stderr)
 
     def test_resume_after_a_kill_gives_the_same_rows(self):

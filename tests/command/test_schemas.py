@@ -118,6 +118,21 @@ class Agreement(ProgramTest):
         for case in ({"raytruth": "case/1"} | RAY, VOLUME_RAY, {"raytruth": "case/1"} | tilted, changed(RAY, "/transfer_function", opacity)):
             self.assert_agreement("eval", schema, mutations(case), BEYOND_CASE_SCHEMA)
 
+    def test_what_is_said_of_files(self):
+        """The members beside "volume"; a series of one volume, so that only its first step is there."""
+        self.write("v.nrrd", b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n\n" + bytes(range(256)) * 16)
+        members = {"nan": 0, "time_step": 0, "spacing": [1, 2, 3]}
+        case = {**VOLUME_RAY, "signal": {**VOLUME_RAY["signal"], "volume": "v.nrrd", **members}}
+        scene = {**test_render.SCENE, "volume": "v.nrrd", **members}
+        field = {"name": "white", "kind": "volume", "volume": "v.nrrd", **members}
+        experiment = changed(EXPERIMENT, "/fields/0", field)
+        for name, command, document, prefix in (("case", "eval", case, "/signal"), ("scene", "render", scene, ""), ("experiment", "run", experiment, "/fields/0")):
+            self.assertTrue(validator(name).is_valid(document))
+            self.assertTrue(self.program_accepts(command, document))
+            said = [(what, mutation) for what, mutation in mutations(document) if what.startswith(tuple(f"{prefix}/{member}" for member in members))]
+            self.assertGreater(len(said), 40)
+            self.assert_agreement(command, validator(name), said, re.compile("none"))
+
     def test_experiments(self):
         schema = validator("experiment")
         recursion = {"kind": "opacity_recursion", "opacities": [0.5], "parts": [4]}

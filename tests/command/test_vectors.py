@@ -97,7 +97,7 @@ class Vectors(ProgramTest):
                     self.assertLessEqual(abs(x - y), bound)
 
     def test_what_cannot_be_written(self):
-        self.assert_refused(self.run_program("vectors", "-o", "absent/v.json"), "absent/v.json: ", "cannot be written")
+        self.assert_refused(self.run_program("vectors", "-o", "absent/v.json"), "absent/v.json: ", "cannot be written", code=4)
         self.assert_refused(self.run_program("vectors", "--seed", "-1"), "--seed")
         self.assert_refused(self.run_program("vectors", "--seed", "x"), "--seed")
 
@@ -164,6 +164,33 @@ class Scores(ProgramTest):
         by_stream = self.json_of("score", self.vectors, "-", "--json", stdin="\n".join(lines).encode())
         self.assertEqual({level["level"]: level for level in by_stream}, plain)
 
+    def test_answers_of_spreadsheets(self):
+        """A byte order mark, semicolons or tabulators between fields, decimal commas with them, signs before numbers."""
+        plain = self.score(csv(self.answers))
+        self.assertEqual(self.score("\ufeff" + csv(self.answers)), plain)
+        for separator, words in ((";", b"semicolons"), ("\t", b"tabulators")):
+            for number in (lambda text: text, lambda text: "+" + text.replace(".", ",")):
+                header, *lines = csv(self.answers).splitlines()
+                rows = [[line.split(",")[0], *map(number, line.split(",")[1:])] for line in lines]
+                text = "\r\n".join(separator.join(row) for row in [header.split(","), *rows])
+                done = self.run_program("score", self.vectors, self.write("answers.csv", "\ufeff" + text), "--json")
+                self.assertEqual({level["level"]: level for level in json.loads(done.stdout)}, plain)
+                self.assertIn(b"answers.csv: read with " + words + b" between fields", done.stderr)
+                self.assertEqual(b"decimal commas" in done.stderr, "," in text.replace("id,", ""))
+
+    def test_answers_that_are_not_finite_have_no_digits(self):
+        good = self.score(csv(self.answers))
+        for wrong in ("nan", "NaN", "-nan", "nan(ind)", "inf", "-Infinity", "1e999", ""):
+            with self.subTest(wrong=wrong):
+                text = csv(self.answers).replace("b,0.5,", f"b,{wrong},")
+                done = self.run_program("score", self.vectors, self.write("answers.csv", text), "--json")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(done.stderr, b"raytruth: answers.csv: 1 of 3 answers are not finite, and count as no digits; the first is b\n")
+                smooth, jump, _ = json.loads(done.stdout)
+                self.assertEqual((smooth["digits_min"], smooth["worst"], smooth["answered"]), (0, "b", 2))
+                self.assertEqual(jump, good["jump"])
+        self.assertEqual(self.score(csv(self.answers).replace("1e-09", "1e-999"))["jump"]["digits_min"], 0)
+
     def test_missing_answers_count_as_no_digits(self):
         del self.answers["b"]
         done = self.run_program("score", self.vectors, self.write("answers.csv", csv(self.answers)), "--json")
@@ -185,19 +212,17 @@ class Scores(ProgramTest):
             ("a,1,1,1,1\n", "line 1: found 'a,1,1,1,1'; the header id,r,g,b,opacity is allowed"),
             ("id,r,g,b,a\n", "line 1: found 'id,r,g,b,a'"),
             ("id,r,g,b\n", "line 1: found 4 fields"),
-            ("\ufeff" + good, "line 1: ", "header"),
+            (good.replace("0.5,0.25,0,", "0,5,0,25,0,"), "line 2: found 7 fields; id,r,g,b,opacity (with decimal commas, semicolons between fields) is allowed"),
+            (good + 'd,"0,5",0,0,0\n', "line 5: found r '0,5'; a number (with decimal commas, semicolons between fields) is allowed"),
+            (good.encode("utf-16"), "found text in UTF-16"),
             (good + "d,0,0,0,0\n", "the id 'd'", "ids of vectors.json"),
             (good.replace("a,", "smooth_ray,"), "the id 'smooth_ray'"),
             (good + "a,0,0,0,0\n", "line 5: found a second answer for 'a'"),
             (good + ",0,0,0,0\n", "line 5: found no id"),
             (good + "d,0,0,0\n", "line 5: found 4 fields; id,r,g,b,opacity is allowed"),
             (good + "d,0,0,0,0,0\n", "line 5: found 6 fields"),
-            (good + "d,0,nan,0,0\n", "line 5: found g 'nan'; a finite number is allowed"),
-            (good + "d,0,0,0,inf\n", "line 5: found opacity 'inf'"),
-            (good + "d,0,0,-Infinity,0\n", "line 5: found b '-Infinity'"),
-            (good + "d,,0,0,0\n", "line 5: found r ''"),
             (good + "d,0x1p3,0,0,0\n", "line 5: found r '0x1p3'"),
-            (good + "d,1e999,0,0,0\n", "line 5: found r '1e999'"),
+            (good.replace(",", ";") + "d;1,000.5;0;0;0\n", "line 5: found r '1,000.5'; a number is allowed"),
             (good + "d,1 2,0,0,0\n", "line 5: found r '1 2'"),
             (good + "d,0.5f,0,0,0\n", "line 5: found r '0.5f'"),
             (good + "d,0,0,0,word\n", "line 5: found opacity 'word'"),

@@ -228,14 +228,15 @@ Case CaseReader::read(const JsonReader& json, std::vector<std::string>& warnings
 }
 
 void CaseReader::read_trilinear(const JsonReader& json, Case& result, std::vector<std::string>& warnings) {
-  json.only({"kind", "volume", "repair", "origin", "direction", "length"});
+  json.only({"kind", "volume", "repair", "nan", "time_step", "spacing", "origin", "direction", "length"});
   const Ray ray = read_ray(json);
   const Grid& grid = read_volume_of(json, warnings);
   trace(json, TrilinearField(grid), ray, result);
 }
 
 void CaseReader::read_tricubic(const JsonReader& json, Case& result, std::vector<std::string>& warnings) {
-  json.only({"kind", "volume", "repair", "origin", "direction", "length", "kernel", "prefilter"});
+  json.only({"kind", "volume", "repair", "nan", "time_step", "spacing", "origin", "direction", "length", "kernel",
+             "prefilter"});
   const Ray ray = read_ray(json);
   const bool is_bspline = json.at("kernel").word({"bspline", "catmull_rom"}) == "bspline";
   const auto prefilter = json.find("prefilter");
@@ -253,10 +254,11 @@ const Grid& CaseReader::read_volume_of(const JsonReader& signal, std::vector<std
   std::string which;  // an inline grid is read again, which costs no more than telling whether it is another one
   if (std::holds_alternative<GeneratedField>(field)) which = place.json().dump();
   if (const auto* const file = std::get_if<VolumeFile>(&field))
-    which = place.blame_for([&] { return find_volume_file(*file, folders_); }).string() +
-            (file->is_repaired ? " repaired" : "");
+    which = place.blame_for([&] { return find_volume_file(*file, volumes_); }).string() + reading_of(*file);
+  if (const auto spacing = signal.find("spacing"))
+    warnings.push_back(spacing->place() + ": warning: it changes nothing: the rays of a case are in voxels");
   if (!which.empty() && which == last_volume_) return grid_;
-  SourcedVolume read = make_volume(field, folders_);
+  SourcedVolume read = make_volume(field, volumes_);
   warnings.insert(warnings.end(), read.warnings.begin(), read.warnings.end());
   grid_ = std::move(read.grid);
   last_volume_ = std::move(which);

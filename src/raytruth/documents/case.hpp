@@ -2,6 +2,7 @@
 
 #include "raytruth/core/chain.hpp"
 #include "raytruth/documents/json/json_reader.hpp"
+#include "raytruth/documents/volume_source.hpp"
 #include "raytruth/reference/arb_integral.hpp"
 #include "raytruth/schemes/sampling.hpp"
 #include "raytruth/signals/analytic.hpp"
@@ -12,7 +13,6 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -36,7 +36,7 @@ struct Case {
 /// Reads cases one after the other; keeps the volume that was read last, for the cases of a list often share it.
 class CaseReader {
  public:
-  explicit CaseReader(std::vector<std::filesystem::path> folders) : folders_(std::move(folders)) {}
+  explicit CaseReader(VolumeAccess volumes) : volumes_(std::move(volumes)) {}
 
   /// Adds a line to `warnings` where an opacity is clamped or a volume looks damaged. Throws InputError.
   Case read(const JsonReader& json, std::vector<std::string>& warnings);
@@ -46,7 +46,7 @@ class CaseReader {
   void read_tricubic(const JsonReader& json, Case& result, std::vector<std::string>& warnings);
   const Grid& read_volume_of(const JsonReader& signal, std::vector<std::string>& warnings);
 
-  std::vector<std::filesystem::path> folders_;
+  VolumeAccess volumes_;
   std::string last_volume_;  ///< which one it is; empty: none
   Grid grid_;
 };

@@ -111,14 +111,15 @@ Grid read_inline_grid(const JsonReader& json, bool has_spacing) {
 FieldDocument read_named_field(const JsonReader& json, std::uint64_t seed) {
   const std::string kind = json.at("kind").word(names_of(catalogue::fields));
   if (find_named(generated_field_kinds, kind) != nullptr) return read_generated(json, kind, {"name"}, seed);
-  json.only({"name", "kind", "volume", "repair"});
+  json.only({"name", "kind", "volume", "repair", "nan", "time_step", "spacing"});
   return read_volume_file(json);
 }
 
 FieldDocument read_volume_member(const JsonReader& owner, bool has_spacing) {
   const JsonReader place = owner.at("volume");
   if (!place.is_object()) return read_volume_file(owner);
-  if (const auto repair = owner.find("repair")) repair->refuse_value("a repair of a file only");
+  for (const std::string_view of_a_file : {"repair", "nan", "time_step", "spacing"})
+    if (const auto stated = owner.find(of_a_file)) stated->refuse_value(fmt::format("{} of a file only", of_a_file));
   if (!place.find("kind")) return read_inline_grid(place, has_spacing);
   constexpr std::uint64_t default_seed = 1;
   return read_generated(place, place.at("kind").word(names_of(generated_field_kinds)), {}, default_seed);
@@ -138,9 +139,9 @@ void fill_in_field_defaults(nlohmann::ordered_json& field) {
   });
 }
 
-SourcedVolume make_volume(const FieldDocument& field, const std::vector<std::filesystem::path>& folders) {
+SourcedVolume make_volume(const FieldDocument& field, const VolumeAccess& volumes) {
   if (const auto* const generated = std::get_if<GeneratedField>(&field)) return {.grid = make_grid(*generated)};
-  if (const auto* const file = std::get_if<VolumeFile>(&field)) return read_sourced_volume(*file, folders);
+  if (const auto* const file = std::get_if<VolumeFile>(&field)) return read_sourced_volume(*file, volumes);
   return {.grid = std::get<Grid>(field)};
 }
 

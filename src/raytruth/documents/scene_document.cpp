@@ -46,12 +46,17 @@ Grid read_voxels(const JsonReader& json, const SceneOptions& options, SceneFile&
   const JsonReader place = json.at("volume");
   const FieldDocument field = read_volume_member(json, true);
   if (const auto* const file = std::get_if<VolumeFile>(&field))
-    place.blame_for([&] { return find_volume_file(*file, options.folders); });  // absent: an error of this place
-  SourcedVolume read = make_volume(field, options.folders);
+    place.blame_for([&] { return find_volume_file(*file, options.volumes); });  // absent: an error of this place
+  SourcedVolume read = make_volume(field, options.volumes);
   result.volume = std::holds_alternative<GeneratedField>(field) ? place.json()
                   : read.file.empty()                           ? nlohmann::ordered_json("inline")
                                                                 : nlohmann::ordered_json(read.file);
   result.warnings = std::move(read.warnings);
+  if (!read.has_spacing)
+    result.warnings.push_back(fmt::format(
+        "{}: warning: {}: the file states no spacing, so 1 is taken along every axis; \"spacing\": [x, y, z] "
+        "beside \"volume\" states it",
+        place.place(), read.file));
   return std::move(read.grid);
 }
 
@@ -243,8 +248,8 @@ std::string read_scheme(const JsonReader& json) {
 
 SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   check_form(json, "scene/1");
-  json.only({"raytruth", "volume", "repair", "reconstruction", "transfer_function", "emission", "camera", "scheme",
-             "step", "shading", "table", "early_termination", "empty_space"});
+  json.only({"raytruth", "volume", "repair", "nan", "time_step", "spacing", "reconstruction", "transfer_function",
+             "emission", "camera", "scheme", "step", "shading", "table", "early_termination", "empty_space"});
   const std::string scheme = read_scheme(json.at("scheme"));
   SceneFile result{.scene = {.transfer = PiecewiseLinear(std::vector<TransferPoint>(1)), .scheme = scheme}};
   Scene& scene = result.scene;

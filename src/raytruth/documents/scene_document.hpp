@@ -1,6 +1,7 @@
 #pragma once
 
 #include "raytruth/documents/json/json_reader.hpp"
+#include "raytruth/documents/volume_source.hpp"
 #include "raytruth/render/scene.hpp"
 
 #include <nlohmann/json.hpp>
@@ -14,8 +15,8 @@ namespace raytruth {
 
 /// What the command line adds to a scene's transfer function.
 struct SceneOptions {
-  std::vector<std::filesystem::path> folders;  ///< of volumes
-  std::optional<std::string> opacity;          ///< file
+  VolumeAccess volumes;
+  std::optional<std::string> opacity;  ///< file
   bool ignores_gradient_opacity = false;
 };
 

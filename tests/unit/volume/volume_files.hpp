@@ -89,12 +89,13 @@ std::vector<double> as_double(const std::vector<T>& values) {
 
 /// Reading `file` throws InputError with one line that names the file (or `named`) and contains `phrase`; nothing is
 /// printed.
-inline void expect_refused(const std::filesystem::path& file, std::string_view phrase, std::string_view named = {}) {
+inline void expect_refused(const std::filesystem::path& file, std::string_view phrase, std::string_view named = {},
+                           const VolumeChoices& choices = {}) {
   std::string message;
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   try {
-    (void)read_volume(file);
+    (void)read_volume(file, choices);
     message = "nothing: the volume was read";
   } catch (const InputError& error) {
     message = error.what();

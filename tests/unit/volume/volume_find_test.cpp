@@ -1,5 +1,7 @@
 #include "raytruth/volume/files/find_volume.hpp"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 
 #include "unit/volume/volume_files.hpp"
@@ -50,9 +52,55 @@ TEST_F(VolumeFind, AbsentVolumesAreTheirOwnException) {
       EXPECT_EQ(message.find('\n'), std::string::npos);
       EXPECT_NE(message.find("no such volume in the data folders"), std::string::npos);
       EXPECT_NE(message.find("--data or RAYTRUTH_DATA"), std::string::npos);
-      EXPECT_EQ(message.find(folder().string()), std::string::npos) << "results would show this machine's folders";
+      EXPECT_EQ(absent.why.find(folder().string()), std::string::npos) << "results would show this machine's folders";
     }
   }
+}
+
+TEST_F(VolumeFind, HintsAtNamesThatAreAlikeAndFoldersThatAreNotThere) {
+  (void)write("a/bonsai_256.nrrd", "");
+  (void)write("b/neghip.nii.gz", "");
+  const auto hint_of = [this](const std::string& name) {
+    try {
+      (void)find(name);
+    } catch (const VolumeAbsent& absent) {
+      return std::string(absent.what()).substr(absent.why.size());
+    }
+    return std::string("found");
+  };
+  const auto rest = fmt::format("`raytruth list volumes` names all; {} is no folder)", (folder() / "none").string());
+  EXPECT_EQ(hint_of("bonsai"), " (perhaps bonsai_256; " + rest);
+  EXPECT_EQ(hint_of("Bonsai.nrrd"), " (perhaps bonsai_256; " + rest);
+  EXPECT_EQ(hint_of("nehgip"), " (perhaps neghip; " + rest);
+  EXPECT_EQ(hint_of("something else"), " (" + rest);
+}
+
+TEST_F(VolumeFind, FilesHereAreNotAbsent) {
+  // The name of the current folder's file has neither a '/' nor the extension of a volume.
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder());
+  (void)write("volume.raw", "");
+  (void)write("HEAD.NII", "");
+  (void)write("a/volume.raw.nrrd", "");
+  EXPECT_EQ(find("HEAD.NII"), "HEAD.NII");
+  EXPECT_EQ(find("volume.raw"), folder() / "a/volume.raw.nrrd") << "as before";
+  std::filesystem::remove(folder() / "a/volume.raw.nrrd");
+  EXPECT_EQ(find("volume.raw"), "volume.raw");
+  std::filesystem::current_path(before);
+}
+
+TEST_F(VolumeFind, ListsWhatItFinds) {
+  for (const auto* name :
+       {"a/one.nii.gz", "a/two.nhdr", "a/two.raw", "a/THREE.NRRD", "b/one.nrrd", "b/four.npy", "b/four.txt"})
+    (void)write(name, "");
+  const std::vector<std::filesystem::path> folders{folder() / "a", folder() / "b", folder() / "none"};
+  std::vector<std::string> names;
+  for (const auto& [name, file] : volumes_in(folders)) {
+    names.push_back(name);
+    EXPECT_EQ(find_volume(name, folders), file);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"THREE", "four", "one", "two"}));
+  EXPECT_EQ(absent_folders(folders), std::vector{folder() / "none"});
 }
 
 TEST(VolumeFolders, OptionThenEnvironmentThenDebian) {

@@ -20,6 +20,9 @@ struct NiftiFields {
   float vox_offset = 352;
   float scl_slope = 0;
   float scl_inter = 0;
+  char xyzt_units = 0;
+  std::int16_t sform_code = 0;
+  std::array<float, 12> sform{};
   std::string magic{"n+1\0", 4};
 
   [[nodiscard]] std::string header() const {
@@ -34,6 +37,9 @@ struct NiftiFields {
     put(70, std::array{datatype, bitpix});
     put(76, pixdim);
     put(108, std::array{vox_offset, scl_slope, scl_inter});
+    bytes[123] = xyzt_units;
+    put(254, std::array{sform_code});
+    put(280, sform);
     bytes.replace(344, 4, magic);
     return bytes;
   }
@@ -152,7 +158,7 @@ TEST_F(VolumeNifti, SlopeAndInterceptGivePhysicalUnits) {
 
 TEST_F(VolumeNifti, SpacingAndExtraAxes) {
   const auto volume = read(
-      NiftiFields{.dim = {5, 3, 1, 2, 1, 2, 0, -1}, .pixdim = {-1, 0.5F, 9, 2, 7, 1.25F, 0, 0}}.with(twelve_bytes));
+      NiftiFields{.dim = {5, 3, 2, 2, 1, 1, 0, -1}, .pixdim = {-1, 0.5F, 2, 1.25F, 7, 9, 0, 0}}.with(twelve_bytes));
   EXPECT_EQ(volume.grid.size, (std::array<std::int64_t, 3>{3, 2, 2}));
   EXPECT_EQ(volume.grid.spacing, (std::array{0.5, 2.0, 1.25}));
   const auto flat = read(NiftiFields{.dim = {4, 12, 1, 1, 1, 1, 1, 1}}.with(twelve_bytes));
@@ -177,14 +183,13 @@ TEST_F(VolumeNifti, RefusesFilesThatAreNone) {
   expect_refused(folder() / "missing.nii.gz", "no such file");
   std::filesystem::create_directory(folder() / "folder.nii");
   expect_refused(folder() / "folder.nii", "not a regular file");
-  expect_refused(write("empty.nii", ""), "the file ends after 0 bytes; a NIfTI-1 header has 348");
+  expect_refused(write("empty.nii", ""), "the file ends after 0 bytes; a NIfTI header has 348 or 540");
   expect_refused(write("empty.nii.gz", ""), "");
-  expect_refused(write("plain.nii.gz", NiftiFields{}.with(twelve_bytes)),
-                 "the gzip data are damaged: incorrect header check");
   expect_refused(write("packed.nii", gzip(std::string(5000, 'x'))), "");
-  expect_refused(write("text.nii", std::string(400, 'x')), "this is not NIfTI; NIfTI-1 is allowed");
-  expect_refused(write("two.nii", NiftiFields{.sizeof_hdr = 540}.with(twelve_bytes)), "this is NIfTI-2");
-  expect_refused(write("nrrd.nii", "NRRD0004\ntype: uint8\n"), "a NIfTI-1 header has 348");
+  expect_refused(write("text.nii", std::string(400, 'x')), "this is not NIfTI; NIfTI is allowed");
+  expect_refused(write("two.nii", NiftiFields{.sizeof_hdr = 540}.with(twelve_bytes)),
+                 "the file ends after 364 bytes; a header of NIfTI-2 has 540");
+  expect_refused(write("nrrd.nii", "NRRD0004\ntype: uint8\n"), "a NIfTI header has 348 or 540");
 }
 
 TEST_F(VolumeNifti, RefusesEveryTruncation) {
@@ -203,8 +208,52 @@ TEST_F(VolumeNifti, RefusesEveryTruncation) {
     SCOPED_TRACE(length);
     expect_refused(write("v.nii.gz", packed.substr(0, length)), "");
   }
-  expect_refused(write("v.nii", whole + "m"), "the data go on after 12 bytes");
-  expect_refused(write("v.nii.gz", gzip(whole + "m")), "the data go on after 12 bytes");
+}
+
+TEST_F(VolumeNifti, WarnsOfBytesBehindTheData) {
+  const auto whole = NiftiFields{}.with(twelve_bytes);
+  const std::string warning = "the header announces 12 bytes of data; the 3 bytes behind them are not read";
+  for (const auto& volume : {read(whole + "mno"), read(gzip(whole + "mno"), "v.nii.gz")}) {
+    EXPECT_EQ(volume.grid.values.back(), 'l');
+    EXPECT_EQ(volume.warnings, std::vector{warning});
+  }
+  for (const std::string& padding : {std::string(1, '\0'), std::string(100000, '\0')})
+    EXPECT_EQ(read(gzip(whole) + padding, "v.nii.gz").warnings, std::vector<std::string>{});
+  for (const std::string& behind : {std::string("\0\0more", 6), std::string("\x1f"), std::string(70000, 'x')}) {
+    const auto volume = read(gzip(whole) + behind, "v.nii.gz");
+    EXPECT_EQ(volume.grid.values.back(), 'l');
+    const auto ignored = behind.size() - (behind.front() == '\0' ? 2 : 0);
+    EXPECT_EQ(volume.warnings, std::vector{fmt::format(
+                                   "the {} bytes behind the gzip data are no such data, and are not read", ignored)});
+  }
+  const auto half = whole.size() / 2;
+  EXPECT_EQ(
+      read(gzip(whole.substr(0, half)) + std::string(512, '\0') + gzip(whole.substr(half)), "v.nii.gz").grid.values,
+      read(whole).grid.values);
+}
+
+TEST_F(VolumeNifti, BytesTellWhetherTheyAreGzip) {
+  const auto whole = NiftiFields{}.with(twelve_bytes);
+  const auto plain = read(whole, "v.nii.gz");
+  EXPECT_EQ(plain.grid.values, read(whole).grid.values);
+  EXPECT_EQ(plain.encoding, Encoding::raw);
+  EXPECT_EQ(plain.warnings,
+            std::vector<std::string>{"the name says gzip, and the bytes are not; they are read as they are"});
+  const auto packed = read(gzip(whole));
+  EXPECT_EQ(packed.grid.values, plain.grid.values);
+  EXPECT_EQ(packed.encoding, Encoding::gzip);
+  EXPECT_EQ(packed.warnings,
+            std::vector<std::string>{"the bytes are gzip, and the name does not say so; they are inflated"});
+}
+
+TEST_F(VolumeNifti, NamesInUpperCase) {
+  const auto expected = read(NiftiFields{}.with(twelve_bytes)).grid.values;
+  EXPECT_EQ(read(NiftiFields{}.with(twelve_bytes), "V.NII").grid.values, expected);
+  EXPECT_EQ(read(gzip(NiftiFields{}.with(twelve_bytes)), "W.NII.GZ").grid.values, expected);
+  (void)write("A.IMG", twelve_bytes);
+  EXPECT_EQ(read(two_files().header(), "A.HDR").grid.values, expected);
+  (void)write("b.img", twelve_bytes);
+  EXPECT_EQ(read(two_files().header(), "b.HDR").grid.values, expected);
 }
 
 TEST_F(VolumeNifti, RefusesDamagedGzipData) {
@@ -219,19 +268,23 @@ TEST_F(VolumeNifti, RefusesTypesThatAreNoNumbers) {
   for (const auto& [datatype, bitpix] : bits_of_type) {
     refused(NiftiFields{.datatype = datatype, .bitpix = bitpix}, fmt::format("the datatype is {} (", datatype));
   }
-  refused(NiftiFields{.datatype = 4, .bitpix = 8}, "bitpix is 8; 16 is allowed for int16");
+  const auto other_bits = read(NiftiFields{.bitpix = 16}.with(twelve_bytes));
+  EXPECT_EQ(other_bits.grid.values.back(), 'l');
+  EXPECT_EQ(other_bits.warnings,
+            std::vector<std::string>{"bitpix is 16; the datatype uint8 says 8, as libnifti and nibabel have it"});
 }
 
 TEST_F(VolumeNifti, RefusesImpossibleSizes) {
   const std::string three_axes = "three axes are allowed, and further ones of size 1";
   refused(NiftiFields{.dim = {2, 3, 4, 1, 1, 1, 1, 1}}, "the sizes are 3 x 4; " + three_axes);
-  refused(NiftiFields{.dim = {4, 3, 2, 2, 2, 1, 1, 1}}, "the sizes are 3 x 2 x 2 x 2; " + three_axes);
   refused(NiftiFields{.dim = {0, 3, 2, 2, 1, 1, 1, 1}}, "dim[0], the number of axes, is 0");
   refused(NiftiFields{.dim = {8, 3, 2, 2, 1, 1, 1, 1}}, "dim[0], the number of axes, is 8");
   refused(NiftiFields{.dim = {-3, 3, 2, 2, 1, 1, 1, 1}}, "dim[0], the number of axes, is -3");
   refused(NiftiFields{.dim = {3, 0, 2, 2, 1, 1, 1, 1}}, "the size dim[1] is 0");
   refused(NiftiFields{.dim = {3, -3, -2, 2, 1, 1, 1, 1}}, "the size dim[1] is -3");
-  refused(NiftiFields{.dim = {7, 3, 2, 2, 1, 1, 1, 0}}, "the size dim[7] is 0");
+  refused(NiftiFields{.dim = {7, 3, 2, 2, 1, 1, 1, -1}}, "the size dim[7] is -1");
+  EXPECT_EQ(read(NiftiFields{.dim = {7, 3, 2, 2, 1, 1, 1, 0}}.with(twelve_bytes)).warnings,
+            std::vector<std::string>{"the size dim[7] is 0; 1 is taken, as libnifti does"});
   refused(NiftiFields{.dim = {3, 32767, 32767, 32767, 1, 1, 1, 1}}, "at most 2^33 voxels are allowed");  // 2^45
   refused(NiftiFields{.dim = {7, 32767, 32767, 32767, 32767, 32767, 32767, 32767}},
           "at most 2^33 voxels are allowed");                                                                // 2^105
@@ -241,13 +294,6 @@ TEST_F(VolumeNifti, RefusesImpossibleSizes) {
 TEST_F(VolumeNifti, RefusesImpossibleNumbers) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   constexpr float infinity = std::numeric_limits<float>::infinity();
-  for (const float bad : {0.0F, -1.0F, nan, infinity}) {
-    refused(NiftiFields{.pixdim = {1, 1, bad, 1, 0, 0, 0, 0}}, "the spacing of axis 1 is ");
-  }
-  for (const float bad : {nan, infinity}) {
-    refused(NiftiFields{.scl_slope = bad}, "scl_slope is ");
-    refused(NiftiFields{.scl_slope = 1, .scl_inter = bad}, "scl_inter is ");
-  }
   for (const float bad : {0.0F, -352.0F, 348.0F, 352.5F, nan, infinity, 1e30F}) {
     refused(NiftiFields{.vox_offset = bad}, "vox_offset is ");
   }
@@ -259,6 +305,100 @@ TEST_F(VolumeNifti, RefusesImpossibleNumbers) {
   refused(NiftiFields{.magic = "\n%s\xff"}, "the magic is \"\\n%s");
 }
 
+TEST_F(VolumeNifti, MendsNumbersAsLibniftiDoes) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const auto only_warning = [](const Volume& volume) {
+    EXPECT_EQ(volume.warnings.size(), 1U);
+    return volume.warnings.empty() ? "" : volume.warnings.front();
+  };
+  for (const float bad : {0.0F, nan, infinity}) {
+    const auto volume = read(NiftiFields{.pixdim = {1, 2, bad, 3, 0, 0, 0, 0}}.with(twelve_bytes));
+    EXPECT_EQ(volume.grid.spacing, (std::array{2.0, 1.0, 3.0}));
+    EXPECT_EQ(only_warning(volume), fmt::format("pixdim[2] is {}; 1 is taken, as libnifti does", bad));
+  }
+  const auto backwards = read(NiftiFields{.pixdim = {1, 2, -0.5F, 3, 0, 0, 0, 0}}.with(twelve_bytes));
+  EXPECT_EQ(backwards.grid.spacing, (std::array{2.0, 0.5, 3.0}));
+  EXPECT_EQ(backwards.grid.values.front(), 'a');
+  EXPECT_NE(only_warning(backwards).find("the spacing of axis 1 is -0.5"), std::string::npos);
+  for (const float bad : {nan, infinity}) {
+    const auto unscaled = read(NiftiFields{.scl_slope = bad, .scl_inter = 7}.with(twelve_bytes));
+    EXPECT_EQ(unscaled.grid.values.front(), 'a');
+    EXPECT_NE(only_warning(unscaled).find("the voxels are read unscaled"), std::string::npos);
+    const auto without_intercept = read(NiftiFields{.scl_slope = 2, .scl_inter = bad}.with(twelve_bytes));
+    EXPECT_EQ(without_intercept.grid.values.front(), 2 * 'a');
+    EXPECT_NE(only_warning(without_intercept).find("0 is taken"), std::string::npos);
+  }
+}
+
+TEST_F(VolumeNifti, TheFourthAxisIsTime) {
+  const NiftiFields fields{
+      .dim = {4, 3, 2, 1, 2, 1, 1, 1}, .pixdim = {1, 1, 2, 3, 2500, 0, 0, 0}, .xyzt_units = 2 + 16};
+  const auto file = write("time.nii", fields.with(twelve_bytes));
+  expect_refused(file, "axis 4 is time, 2 steps of 2500 ms; one volume is allowed: --time-step N, or \"time_step\": N");
+  for (const std::int64_t step : {0, 1}) {
+    const auto volume = read_volume(file, {.time_step = step});
+    EXPECT_EQ(volume.grid.size, (std::array<std::int64_t, 3>{3, 2, 1}));
+    EXPECT_EQ(volume.grid.spacing, (std::array{1.0, 2.0, 3.0}));
+    EXPECT_EQ(volume.grid.values.front(), step == 0 ? 'a' : 'g');
+    EXPECT_EQ(volume.grid.values.size(), 6U);
+  }
+  expect_refused(file, "the time step 2 is asked for; 0 to 1 are allowed", {}, {.time_step = 2});
+  const auto alone = write("alone.nii", NiftiFields{.dim = {4, 3, 2, 2, 1, 1, 1, 1}}.with(twelve_bytes));
+  EXPECT_EQ(read_volume(alone, {.time_step = 0}).grid.values.size(), 12U);
+  expect_refused(alone, "the time step 1 is asked for; the file holds one volume: 0 is allowed", {}, {.time_step = 1});
+  refused(NiftiFields{.dim = {5, 3, 2, 1, 1, 2, 1, 1}}, "axis 5 holds 2 numbers for each voxel");
+  expect_refused(write("both.nii", NiftiFields{.dim = {5, 3, 1, 1, 2, 2, 1, 1}}.with(twelve_bytes)),
+                 "axis 5 holds 2 numbers for each voxel", {}, {.time_step = 0});
+}
+
+TEST_F(VolumeNifti, SformThatDisagrees) {
+  NiftiFields fields{.pixdim = {1, 1, 2, 3, 0, 0, 0, 0}, .sform_code = 1};
+  fields.sform = {0, -2, 0, 9, 1, 0, 0, 9, 0, 0, 3, 9};  // a rotation
+  EXPECT_EQ(read(fields.with(twelve_bytes)).warnings, std::vector<std::string>{});
+  fields.sform = {1, 0, 0, 9, 0, 2, 0, 9, 0, 0, 1.5F, 9};
+  const auto other = read(fields.with(twelve_bytes));
+  EXPECT_EQ(other.grid.spacing, (std::array{1.0, 2.0, 3.0}));
+  EXPECT_EQ(other.warnings,
+            std::vector<std::string>{"pixdim states the spacing 1 2 3, and the sform 1 2 1.5; the first is taken"});
+  fields.sform = {0, -1.2F, 0, 9, 1, 1.6F, 0, 9, 0, 0, 3, 9};
+  EXPECT_EQ(
+      read(fields.with(twelve_bytes)).warnings,
+      std::vector<std::string>{
+          "the axes of the sform are sheared, two of them meet at 36.9 degrees; a grid of right angles is taken"});
+  fields.sform_code = 0;
+  EXPECT_EQ(read(fields.with(twelve_bytes)).warnings, std::vector<std::string>{});
+}
+
+TEST_F(VolumeNifti, Version2InBothOrdersOfBytes) {
+  for (const auto endian : {std::endian::little, std::endian::big}) {
+    std::string bytes(544, '\0');
+    const auto put = [&](std::size_t place, auto values) {
+      using Number = typename decltype(values)::value_type;
+      const auto text = stored<Number>(std::span<const Number>(values), endian);
+      bytes.replace(place, text.size(), text);
+    };
+    // The places of nifti2.h.
+    put(0, std::array<std::int32_t, 1>{540});
+    bytes.replace(4, 8, std::string("n+2\0\r\n\x1a\n", 8));
+    put(12, std::array<std::int16_t, 2>{512, 16});
+    put(16, std::array<std::int64_t, 8>{3, 3, 2, 2, 1, 1, 1, 1});
+    put(104, std::array<double, 8>{1, 0.1, 0.2, 0.3, 0, 0, 0, 0});
+    put(168, std::array<std::int64_t, 1>{544});
+    put(176, std::array<double, 2>{0.5, -3});
+    const auto values = twelve_values<std::uint16_t>();
+    const auto whole = bytes + stored<std::uint16_t>(values, endian);
+    for (const auto& volume : {read(whole), read(gzip(whole), "v.nii.gz")}) {
+      EXPECT_EQ(volume.format, "NIfTI-2");
+      EXPECT_EQ(volume.endian, endian);
+      EXPECT_EQ(volume.grid.spacing, (std::array{0.1, 0.2, 0.3}));
+      EXPECT_EQ(volume.grid.size, (std::array<std::int64_t, 3>{3, 2, 2}));
+      for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(volume.grid.values[i], 0.5 * values[i] - 3);
+      EXPECT_EQ(volume.warnings, std::vector<std::string>{});
+    }
+  }
+}
+
 TEST_F(VolumeNifti, RefusesValuesThatAreNotFinite) {
   auto values = twelve_values<double>();
   values[1] = 0;
@@ -266,11 +406,13 @@ TEST_F(VolumeNifti, RefusesValuesThatAreNotFinite) {
   const NiftiFields fields{.datatype = 64, .bitpix = 64};
   EXPECT_NO_THROW((void)read(fields.with(stored<double>(values, std::endian::little))));
   values[11] = std::numeric_limits<double>::quiet_NaN();
-  expect_refused(write("v.nii", fields.with(stored<double>(values, std::endian::little))), "voxel (2, 1, 1) is nan");
+  expect_refused(write("v.nii", fields.with(stored<double>(values, std::endian::little))),
+                 "1 of 12 voxels are NaN, the first is voxel (2, 1, 1); only finite");
   values[11] = 1e308;
   auto scaled = fields;
   scaled.scl_slope = 100;
-  expect_refused(write("v.nii", scaled.with(stored<double>(values, std::endian::little))), "voxel (2, 1, 1) is inf");
+  expect_refused(write("v.nii", scaled.with(stored<double>(values, std::endian::little))),
+                 "1 of 12 voxels are infinite, the first is voxel (2, 1, 1)");
 }
 
 TEST_F(VolumeNifti, RefusesBadDataBesideTheHeader) {
@@ -278,10 +420,11 @@ TEST_F(VolumeNifti, RefusesBadDataBesideTheHeader) {
   (void)write("short.img", twelve_bytes.substr(1));
   expect_refused(write("short.hdr", two_files().header()), "can hold no more than 11 bytes", "short.img");
   (void)write("long.img", std::string(twelve_bytes) + "\n");
-  expect_refused(write("long.hdr", two_files().header()), "the data go on after 12 bytes", "long.img");
+  EXPECT_EQ(read(two_files().header(), "long.hdr").warnings,
+            std::vector<std::string>{"the header announces 12 bytes of data; the 1 bytes behind them are not read"});
   (void)write("v.img", twelve_bytes);
   expect_refused(write("v.hdr", NiftiFields{}.header()), "the magic is \"n+1\"");
-  expect_refused(folder() / "v.img", "name does not tell the format");
+  expect_refused(folder() / "v.img", "neither the name nor the first bytes tell the format");
 }
 
 }  // namespace

@@ -137,7 +137,6 @@ TEST_F(VolumeNrrd, Spacing) {
   EXPECT_EQ(spacing("spacings: nan 2 nan\n"), (std::array{1.0, 2.0, 1.0}));
   EXPECT_EQ(spacing("space: left-posterior-superior\nspace directions: (0,3,4) (-2,0,0) (0,0,0.5)\n"),
             (std::array{5.0, 2.0, 0.5}));
-  EXPECT_EQ(spacing("space dimension: 3\nspace directions: none (0,-2,0) (0,0,7)\n"), (std::array{1.0, 2.0, 7.0}));
 }
 
 TEST_F(VolumeNrrd, ExtraAxesOfSizeOneAreDropped) {
@@ -205,14 +204,176 @@ TEST_F(VolumeNrrd, LastByteThatLooksLikeANewline) {
   EXPECT_FALSE(read(NrrdFields{.sizes = "1 1 1", .encoding = "ascii"}.attached("10\n")).lost_first_byte);
 }
 
+TEST_F(VolumeNrrd, EndsOfAxesMakeSpacing) {
+  const std::string ends = "axis mins: 0 -1 0\naxis maxs: 6 3 2\n";
+  const auto cells = read(NrrdFields{.more = ends + "centers: cell cell cell\n"}.attached(twelve_bytes));
+  EXPECT_EQ(cells.grid.spacing, (std::array{2.0, 2.0, 1.0}));
+  EXPECT_EQ(cells.warnings, std::vector<std::string>{});
+  const auto nodes = read(NrrdFields{.more = ends + "centers: node node cell\n"}.attached(twelve_bytes));
+  EXPECT_EQ(nodes.grid.spacing, (std::array{3.0, 4.0, 1.0}));
+  const auto unsaid = read(NrrdFields{.more = ends}.attached(twelve_bytes));
+  EXPECT_EQ(unsaid.grid.spacing, cells.grid.spacing);
+  EXPECT_EQ(unsaid.warnings.size(), 3U);
+  const auto backwards =
+      read(NrrdFields{.more = "axis mins: 6 0 0\naxis maxs: 0 4 2\ncenters: cell cell cell\n"}.attached(twelve_bytes));
+  EXPECT_EQ(backwards.grid.spacing, cells.grid.spacing);
+  EXPECT_EQ(backwards.warnings.size(), 1U);
+  const auto both =
+      read(NrrdFields{.more = ends + "centers: cell cell cell\nspacings: 2 2 5\n"}.attached(twelve_bytes));
+  EXPECT_EQ(both.grid.spacing, (std::array{2.0, 2.0, 5.0}));
+  EXPECT_EQ(both.warnings,
+            std::vector<std::string>{
+                "axis 2 has the spacing 5, and 1 by \"axis mins\" and \"axis maxs\"; the first is taken"});
+  refused(NrrdFields{.more = "axis mins: 1 0 0\naxis maxs: 1 4 2\ncenters: cell cell cell\n"}.attached(twelve_bytes),
+          "the spacing of axis 0 is 0");
+  const auto directions =
+      read(NrrdFields{.more = ends + "space dimension: 3\nspace directions: (2,0,0) (0,2,0) (0,0,2)\n"}.attached(
+          twelve_bytes));
+  EXPECT_EQ(directions.grid.spacing, (std::array{2.0, 2.0, 2.0}));
+  EXPECT_EQ(directions.warnings.size(), 1U);
+  EXPECT_FALSE(read(NrrdFields{}.attached(twelve_bytes)).has_spacing);
+  EXPECT_TRUE(cells.has_spacing);
+}
+
+TEST_F(VolumeNrrd, SpacingThatIsAskedFor) {
+  const auto file = write("v.nrrd", NrrdFields{.more = "spacings: 1 2 3\n"}.attached(twelve_bytes));
+  const auto volume = read_volume(file, {.spacing = {{0.5, 2, 3}}});
+  EXPECT_EQ(volume.grid.spacing, (std::array{0.5, 2.0, 3.0}));
+  EXPECT_EQ(volume.warnings,
+            std::vector<std::string>{"the file states the spacing 1 2 3; 0.5 2 3, which is asked for, is taken"});
+  EXPECT_EQ(read_volume(file, {.spacing = {{1, 2, 3}}}).warnings, std::vector<std::string>{});
+}
+
+TEST_F(VolumeNrrd, ShearIsSaid) {
+  const auto warnings = [&](const std::string& directions) {
+    return read(NrrdFields{.more = "space dimension: 3\nspace directions: " + directions + "\n"}.attached(twelve_bytes))
+        .warnings;
+  };
+  EXPECT_EQ(warnings("(0,3,4) (-2,0,0) (0,-4,3)"), std::vector<std::string>{});
+  EXPECT_EQ(warnings("(1,0,0) (1,1,0) (0,0,1)"),
+            std::vector<std::string>{
+                "the space directions are sheared, two of them meet at 45.0 degrees; a grid of right angles is taken"});
+}
+
+TEST_F(VolumeNrrd, SeriesOfVolumes) {
+  const auto slowest =
+      write("slowest.nrrd",
+            NrrdFields{.dimension = "4", .sizes = "3 2 1 2", .more = "kinds: space space space time\n"}.attached(
+                twelve_bytes));
+  expect_refused(slowest, "axis 3 has the kind time: it holds 2 volumes; one volume is allowed");
+  EXPECT_EQ(read_volume(slowest, {.time_step = 1}).grid.values, letters("ghijkl"));
+  // As 3D Slicer writes sequences.
+  const auto fastest = write(
+      "fastest.nrrd",
+      NrrdFields{
+          .dimension = "4",
+          .sizes = "2 3 2 1",
+          .more =
+              "space dimension: 3\nspace directions: none (1,0,0) (0,2,0) (0,0,3)\nkinds: list domain domain domain\n"}
+          .attached(twelve_bytes));
+  expect_refused(fastest, "axis 0 has the kind list: it holds 2 volumes");
+  const auto second = read_volume(fastest, {.time_step = 1});
+  EXPECT_EQ(second.grid.values, letters("bdfhjl"));
+  EXPECT_EQ(second.grid.spacing, (std::array{1.0, 2.0, 3.0}));
+  const auto packed = write(
+      "packed.nrrd",
+      NrrdFields{.dimension = "4", .sizes = "3 1 2 2", .encoding = "gzip", .more = "kinds: space space time space\n"}
+          .attached(gzip(twelve_bytes)));
+  EXPECT_EQ(read_volume(packed, {.time_step = 1}).grid.values, letters("defjkl"));
+  refused(NrrdFields{.more = "kinds: space space time\n"}.attached(twelve_bytes), "axis 2 has the kind time");
+}
+
+TEST_F(VolumeNrrd, ByteSkipMinus1TakesTheLastBytes) {
+  const NrrdFields fields{.encoding = "gzip", .more = "byte skip: -1\n"};
+  EXPECT_EQ(read(fields.attached(gzip("before" + std::string(twelve_bytes)))).grid.values, letters(twelve_bytes));
+  EXPECT_EQ(read(fields.attached(gzip(twelve_bytes))).grid.values, letters(twelve_bytes));
+}
+
+TEST_F(VolumeNrrd, WarnsOfWhatIsBehindTheData) {
+  const std::string thirteen = std::string(twelve_bytes) + "m";
+  for (const auto& volume :
+       {read(NrrdFields{}.attached(thirteen)), read(NrrdFields{.encoding = "gzip"}.attached(gzip(thirteen))),
+        read(NrrdFields{.encoding = "gzip"}.attached(gzip(twelve_bytes) + "more")),
+        read(NrrdFields{.encoding = "gzip"}.attached(twelve_bytes))}) {
+    EXPECT_EQ(volume.grid.values, letters(twelve_bytes));
+    EXPECT_EQ(volume.warnings.size(), 1U);
+  }
+  EXPECT_EQ(read(NrrdFields{.encoding = "ascii"}.attached("1 2 3 4 5 6 7 8 9 10 11 12 13 x")).warnings,
+            std::vector<std::string>{"the header announces 12 numbers; the 2 words behind them are not read"});
+}
+
+TEST_F(VolumeNrrd, IntegersThatBinary64DoesNotKeepApart) {
+  const std::vector<std::int64_t> values{(std::int64_t{1} << 53) + 1,
+                                         -(std::int64_t{1} << 53) - 1,
+                                         std::int64_t{1} << 53,
+                                         std::int64_t{1} << 60,
+                                         std::numeric_limits<std::int64_t>::min(),
+                                         7};
+  const NrrdFields fields{.type = "int64", .sizes = "3 2 1"};
+  EXPECT_EQ(read(fields.attached(stored<std::int64_t>(values, std::endian::little))).warnings,
+            std::vector<std::string>{
+                "5 of 6 voxels are integers beyond 2^53, which binary64 does not keep apart: 2 of them are "
+                "rounded, and different ones may have become the same"});
+  const std::vector<std::uint64_t> exact{1ULL << 63U, 1ULL << 53U, 0};
+  EXPECT_EQ(
+      read(NrrdFields{.type = "uint64", .sizes = "3 1 1"}.attached(stored<std::uint64_t>(exact, std::endian::little)))
+          .warnings,
+      std::vector<std::string>{});
+  const std::vector<std::uint64_t> largest{std::numeric_limits<std::uint64_t>::max(), 0, 0};
+  EXPECT_EQ(
+      read(NrrdFields{.type = "uint64", .sizes = "3 1 1"}.attached(stored<std::uint64_t>(largest, std::endian::little)))
+          .warnings.size(),
+      1U);
+}
+
+TEST_F(VolumeNrrd, VoxelsThatAreNaNGetAValue) {
+  auto values = twelve_values<float>();
+  values[3] = values[7] = std::numeric_limits<float>::quiet_NaN();
+  const auto file = write("v.nrrd", NrrdFields{.type = "float"}.attached(stored<float>(values, std::endian::little)));
+  expect_refused(
+      file,
+      "2 of 12 voxels are NaN, the first is voxel (0, 1, 0); only finite values are allowed; --nan VALUE, or \"nan\"");
+  const auto volume = read_volume(file, {.nan = -2});
+  EXPECT_EQ(volume.grid.values[3], -2);
+  EXPECT_EQ(volume.grid.values[7], -2);
+  EXPECT_EQ(volume.warnings, std::vector<std::string>{
+                                 "2 of 12 voxels are NaN, the first is voxel (0, 1, 0); they are given the value -2"});
+  values[4] = std::numeric_limits<float>::infinity();
+  expect_refused(write("v.nrrd", NrrdFields{.type = "float"}.attached(stored<float>(values, std::endian::little))),
+                 "1 of 12 voxels are infinite, the first is voxel (1, 1, 0)", {}, {.nan = -2});
+}
+
+TEST_F(VolumeNrrd, MemoryLimit) {
+  const auto file = write("v.nrrd", NrrdFields{}.attached(twelve_bytes));
+  EXPECT_NO_THROW((void)read_volume(file, {}, 96));
+  try {
+    (void)read_volume(file, {}, 95);
+    FAIL() << "read";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("the header announces 3 x 2 x 2 voxels of type uint8, which need 96 bytes of memory; "
+                        "the memory limit is 95 bytes; --memory-limit SIZE"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(VolumeNrrd, FirstBytesTellTheFormatOfOtherNames) {
+  const auto volume = read(NrrdFields{}.attached(twelve_bytes), "v.data");
+  EXPECT_EQ(volume.grid.values, letters(twelve_bytes));
+  EXPECT_EQ(volume.warnings,
+            std::vector<std::string>{"the name does not tell the format; the first bytes are those of NRRD"});
+  EXPECT_EQ(read(NrrdFields{}.attached(twelve_bytes), "V.NRRD").warnings, std::vector<std::string>{});
+}
+
 TEST_F(VolumeNrrd, RefusesFilesThatAreNone) {
   expect_refused(folder() / "missing.nrrd", "no such file");
   std::filesystem::create_directory(folder() / "folder.nrrd");
   expect_refused(folder() / "folder.nrrd", "not a regular file");
   ASSERT_EQ(::mkfifo((folder() / "pipe.nrrd").c_str(), 0600), 0);
   expect_refused(folder() / "pipe.nrrd", "not a regular file");
-  expect_refused(write("volume.raw", twelve_bytes), ".nrrd, .nhdr, .nii, .nii.gz and .hdr are allowed");
-  expect_refused(write("volume", twelve_bytes), "name does not tell the format");
+  expect_refused(write("volume.raw", twelve_bytes), ".nrrd, .nhdr, .nii, .nii.gz, .hdr and .npy are allowed");
+  expect_refused(write("volume", twelve_bytes), "neither the name nor the first bytes tell the format");
   expect_refused(write("new\nline.nrrd", "x"), "header is \"x\"", "new\\nline.nrrd");
   if (::geteuid() != 0) {
     const auto closed = write("closed.nrrd", NrrdFields{}.attached(twelve_bytes));
@@ -264,7 +425,14 @@ TEST_F(VolumeNrrd, RefusesWhatIsNotAScalarVolume) {
   refused(NrrdFields{.dimension = "4", .sizes = "3 2 2 2"}.attached(twelve_bytes),
           "the sizes are 3 x 2 x 2 x 2; " + three_axes);
   refused(NrrdFields{.more = "kinds: RGB-color domain domain\n"}.attached(twelve_bytes),
-          "holds the parts of a RGB-color");
+          "axis 0 holds the 3 parts of a RGB-color");
+  refused(NrrdFields{.dimension = "4", .sizes = "2 3 2 1", .more = "kinds: vector domain domain domain\n"}.attached(
+              twelve_bytes),
+          "axis 0 holds the 2 parts of a vector");
+  refused(NrrdFields{.more = "space dimension: 2\nspace directions: none (1,0) (0,1)\n"}.attached(twelve_bytes),
+          "axis 0 has the direction none, so it is no axis of space, and its size is 3");
+  refused(NrrdFields{.more = "space dimension: 3\nspace directions: none (0,-2,0) (0,0,7)\n"}.attached(twelve_bytes),
+          "axis 0 has the direction none");
   refused(NrrdFields{.type = "block", .more = "block size: 1\n"}.attached(twelve_bytes),
           "the type is \"block\"; integer and floating types are allowed");
   refused(NrrdFields{.encoding = "hex"}.attached(twelve_bytes),
@@ -288,38 +456,35 @@ TEST_F(VolumeNrrd, RefusesImpossibleSizes) {
 }
 
 TEST_F(VolumeNrrd, RefusesImpossibleSpacing) {
-  for (const std::string bad :
-       {"spacings: 1 0 1\n", "spacings: 1 inf 1\n", "spacings: 1 -2 1\n", "spacings: 1 1\n", "spacings: 1 x 1\n",
-        "spacings: 1 banana 1\n", "spacings: 1 2x 1\n", "spacings: 1 1e999 1\n",
-        "space: left-posterior-superior\nspace directions: (0,0,0) (0,1,0) (0,0,1)\n",
-        "space directions: (1,0,0) (0,1,0) (0,0,1)\n"}) {
+  for (const std::string bad : {"spacings: 1 0 1\n", "spacings: 1 inf 1\n", "spacings: 1 1\n", "spacings: 1 x 1\n",
+                                "spacings: 1 banana 1\n", "spacings: 1 2x 1\n", "spacings: 1 1e999 1\n",
+                                "space: left-posterior-superior\nspace directions: (0,0,0) (0,1,0) (0,0,1)\n",
+                                "space directions: (1,0,0) (0,1,0) (0,0,1)\n"}) {
     SCOPED_TRACE(bad);
     refused(NrrdFields{.more = bad}.attached(twelve_bytes), "");
   }
-  refused(NrrdFields{.more = "spacings: 1 -2 1\n"}.attached(twelve_bytes),
-          "the spacing of axis 1 is -2; a finite number > 0");
+  const auto backwards = read(NrrdFields{.more = "spacings: 1 -2 1\n"}.attached(twelve_bytes));
+  EXPECT_EQ(backwards.grid.spacing, (std::array{1.0, 2.0, 1.0}));
+  EXPECT_EQ(backwards.warnings.size(), 1U);
 }
 
 TEST_F(VolumeNrrd, RefusesDataOfAnotherLengthThanAnnounced) {
   const std::string eleven(twelve_bytes.substr(0, 11));
-  const std::string thirteen = std::string(twelve_bytes) + "m";
   refused(NrrdFields{}.attached(eleven), "can hold no more than 11 bytes of data; the header announces 12 voxels");
   refused(NrrdFields{}.attached(""), "can hold no more than 0 bytes");
   refused(NrrdFields{}.header(), "the header ends without an empty line");
-  refused(NrrdFields{}.attached(thirteen), "the data go on after 12 bytes");
   refused(NrrdFields{.encoding = "gzip"}.attached(gzip(eleven)),
           "the data end after 11 bytes; the header announces 12");
-  refused(NrrdFields{.encoding = "gzip"}.attached(gzip(thirteen)), "the data go on after 12 bytes");
   refused(NrrdFields{.encoding = "ascii"}.attached("1 2 3 4 5 6 7 8 9 10 11   "), "the data end after 11 numbers");
-  refused(NrrdFields{.encoding = "ascii"}.attached("1 2 3 4 5 6 7 8 9 10 11 12 13"), "the data go on after 12 numbers");
   refused(NrrdFields{.type = "short", .sizes = "2 3 1"}.attached(eleven), "no more than 11 bytes of data");
   refused(NrrdFields{.more = "byte skip: 1\n"}.attached(twelve_bytes), "no more than 11 bytes of data");
   refused(NrrdFields{.more = "byte skip: 9223372036854775807\n"}.attached(twelve_bytes),
           "no more than 0 bytes of data");
   refused(NrrdFields{.more = "byte skip: -1\n"}.attached(eleven), "has 11 bytes of data; the header announces 12");
   refused(NrrdFields{.more = "byte skip: -2\n"}.attached(twelve_bytes), "\"byte skip\" is -2");
-  refused(NrrdFields{.encoding = "gzip", .more = "byte skip: -1\n"}.attached(gzip(twelve_bytes)),
-          "\"byte skip\" is -1");
+  refused(NrrdFields{.encoding = "gzip", .more = "byte skip: -1\n"}.attached(gzip(eleven)),
+          "has 11 bytes of data; the header announces 12");
+  refused(NrrdFields{.encoding = "ascii", .more = "byte skip: -1\n"}.attached("1"), "\"byte skip\" is -1");
   refused(NrrdFields{.more = "line skip: 4000000000\n"}.attached(twelve_bytes), "lines too early");
 }
 
@@ -332,7 +497,8 @@ TEST_F(VolumeNrrd, RefusesDamagedGzipData) {
   }
   refused(fields.attached(whole.substr(0, whole.size() - 1)),
           "the gzip data end early; whole gzip streams are allowed");
-  refused(fields.attached(twelve_bytes), "the gzip data are damaged: incorrect header check");
+  refused(fields.attached(twelve_bytes.substr(1)), "can hold no more than 11 bytes of data");
+  refused(fields.attached(std::string(twelve_bytes) + "m"), "the data are not gzip, and 13 bytes");
   constexpr std::size_t header_size = 10;
   for (std::size_t position = header_size; position < whole.size(); ++position) {
     SCOPED_TRACE(position);
@@ -340,7 +506,6 @@ TEST_F(VolumeNrrd, RefusesDamagedGzipData) {
     damaged[position] = static_cast<char>(damaged[position] ^ 1);
     refused(fields.attached(damaged), "");
   }
-  refused(fields.attached(whole + "more"), "the gzip data are damaged: incorrect header check");
   auto wrong_checksum = whole;
   wrong_checksum[whole.size() - 8] = static_cast<char>(wrong_checksum[whole.size() - 8] ^ 1);
   refused(fields.attached(wrong_checksum), "incorrect data check");
@@ -363,10 +528,11 @@ TEST_F(VolumeNrrd, RefusesValuesThatAreNotFinite) {
   constexpr std::size_t second_in_each_axis = 1 + 3 + 6;
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::infinity()}) {
     values[second_in_each_axis] = bad;
-    refused(NrrdFields{.type = "float"}.attached(stored<float>(values, std::endian::little)), "voxel (1, 1, 1) is ");
+    refused(NrrdFields{.type = "float"}.attached(stored<float>(values, std::endian::little)),
+            "the first is voxel (1, 1, 1); only finite values are allowed");
   }
   refused(NrrdFields{.type = "double", .sizes = "2 1 1", .encoding = "ascii"}.attached("1 nan"),
-          "voxel (1, 0, 0) is nan");
+          "1 of 2 voxels are NaN, the first is voxel (1, 0, 0)");
 }
 
 TEST_F(VolumeNrrd, RefusesAsciiThatIsNoNumberOfTheType) {
@@ -399,7 +565,6 @@ TEST_F(VolumeNrrd, RefusesBadDetachedData) {
   expect_refused(write("v.nhdr", header("LIST\nshort.raw\nshort.raw\nshort.raw\nshort.raw\nshort.raw")),
                  "5 data files hold 12 voxels");
   expect_refused(write("v.nhdr", header("LIST\nshort.raw\nnone.raw")), "no such file", "none.raw");
-  expect_refused(write("v.nhdr", header("LIST\nshort.raw\nshort.raw")), "the data go on after 6 bytes", "short.raw");
   expect_refused(write("v.nhdr", header("SKIPLIST\n1 short.raw")), "line 8 of the header");
   expect_refused(write("v.nhdr", header("SKIPLIST")), "SKIPLIST");
   for (const std::string bad : {"s%d 1 2 0", "s%d 2 1 1", "s%d 1 2 -1", "s%d 1 2 -5", "s%d -999999999 999999999 1"}) {

@@ -14,9 +14,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
 #include <numeric>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 
 namespace raytruth {
 
@@ -24,6 +27,8 @@ namespace {
 
 constexpr double unit_roundoff = 0x1p-53;
 constexpr std::array<std::string_view, 5> header{"id", "r", "g", "b", "opacity"};
+
+bool is_finite(const Answer& answer) { return answer.color.isFinite().all() && std::isfinite(answer.opacity); }
 
 double digits_of(double error, double scale, double radius) {
   if (!(scale > 0)) return error <= radius ? -std::log10(unit_roundoff) : 0;
@@ -47,6 +52,19 @@ LevelScore score_level(std::string level, const std::vector<const ScoredVector*>
           .worst = vectors[static_cast<std::size_t>(worst)]->id};
 }
 
+/// What spreadsheets put between fields, and in numbers.
+struct Dialect {
+  char separator = ',';
+  bool has_decimal_commas = false;  ///< seen so far
+};
+
+/// By the header: a semicolon or a tabulator stands there only where it separates.
+Dialect dialect_of(const std::string& text_of_header) {
+  for (const char separator : {';', '\t'})
+    if (text_of_header.find(separator) != std::string::npos) return {separator};
+  return {};
+}
+
 /// A line of the answers, and where it stands.
 struct Line {
   std::string place;
@@ -56,32 +74,54 @@ struct Line {
     throw InputError(one_line(fmt::format("{}: found {}; {} is allowed", place, found, allowed)));
   }
 
-  [[nodiscard]] std::vector<std::string> fields() const {
+  [[nodiscard]] std::vector<std::string> fields(const Dialect& dialect) const {
     std::vector<std::string> fields;
     try {
       // A backslash means nothing in RFC 4180; the escape character is one that no id and no number has.
-      const boost::tokenizer tokens(text, boost::escaped_list_separator<char>('\x1b', ',', '"'));
+      const boost::tokenizer tokens(text, boost::escaped_list_separator<char>('\x1b', dialect.separator, '"'));
       for (const std::string& token : tokens) fields.push_back(boost::trim_copy(token));
     } catch (const boost::escaped_list_error&) {
       refuse("an escape character", "text");
     }
-    if (fields.size() != header.size())
-      refuse(fmt::format("{} fields", fields.size()), fmt::format("{}", fmt::join(header, ",")));
-    return fields;
+    if (fields.size() == header.size()) return fields;
+    constexpr std::size_t with_decimal_commas = 1 + 2 * (header.size() - 1);
+    const bool has_decimal_commas =
+        dialect.separator == ',' && fields.size() > header.size() && fields.size() <= with_decimal_commas;
+    refuse(fmt::format("{} fields", fields.size()),
+           fmt::format("{}{}", fmt::join(header, ","),
+                       has_decimal_commas ? " (with decimal commas, semicolons between fields)" : ""));
   }
 
-  [[nodiscard]] double number(std::string_view name, const std::string& field) const {
+  /// A number; NaN where the field is empty, and an infinity beyond binary64: neither has digits.
+  [[nodiscard]] double number(std::string_view name, const std::string& field, Dialect& dialect) const {
+    if (field.empty()) return std::numeric_limits<double>::quiet_NaN();
+    std::string digits = field.front() == '+' ? field.substr(1) : field;
+    if (dialect.separator != ',' && digits.find('.') == std::string::npos &&
+        std::count(digits.begin(), digits.end(), ',') == 1) {
+      digits[digits.find(',')] = '.';
+      dialect.has_decimal_commas = true;
+    }
     double value = 0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value))
-      refuse(fmt::format("{} '{}'", name, shortened(field)), "a finite number");
-    return value;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (end != digits.data() + digits.size() || error == std::errc::invalid_argument) {
+      const bool has_comma = dialect.separator == ',' && field.find(',') != std::string::npos;
+      refuse(fmt::format("{} '{}'", name, shortened(field)),
+             has_comma ? "a number (with decimal commas, semicolons between fields)" : "a number");
+    }
+    // What is too small for binary64 is 0, and what is too large an infinity, as strtod has it.
+    return error == std::errc::result_out_of_range ? std::strtod(digits.c_str(), nullptr) : value;
   }
 };
 
 /// The lines that are not blank.
 std::vector<Line> lines_of(const std::string& path) {
-  std::istringstream text(read_text(path, "a readable CSV file"));
+  std::string bytes = read_text(path, "a readable CSV file");
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (bytes.starts_with(byte_order_mark)) bytes.erase(0, byte_order_mark.size());
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
+    throw InputError(
+        fmt::format("{}: found text in UTF-16, by its byte order mark; UTF-8 is allowed", input_name(path)));
+  std::istringstream text(bytes);
   std::vector<Line> lines;
   std::string line;
   for (int number = 1; std::getline(text, line); ++number)
@@ -95,6 +135,7 @@ std::vector<Line> lines_of(const std::string& path) {
 }  // namespace
 
 double digits_correct(const Answer& answer, const Certified& truth) {
+  if (!is_finite(answer)) return 0;
   const double color_error = (answer.color - truth.color).abs().maxCoeff();
   const double opacity_error = std::abs(answer.opacity - truth.opacity);
   return std::min(digits_of(color_error, truth.color.maxCoeff(), truth.radius),
@@ -117,21 +158,32 @@ std::vector<LevelScore> score(const std::vector<ScoredVector>& vectors) {
   return scores;
 }
 
-std::map<std::string, Answer> read_answers(const std::string& path) {
+std::map<std::string, Answer> read_answers(const std::string& path, std::vector<std::string>& warnings) {
   const std::vector<Line> lines = lines_of(path);
-  if (!std::equal(header.begin(), header.end(), lines.front().fields().begin()))
+  Dialect dialect = dialect_of(lines.front().text);
+  if (!std::equal(header.begin(), header.end(), lines.front().fields(dialect).begin()))
     lines.front().refuse(fmt::format("'{}'", shortened(boost::trim_copy(lines.front().text))),
                          fmt::format("the header {}", fmt::join(header, ",")));
   std::map<std::string, Answer> answers;
-  std::for_each(lines.begin() + 1, lines.end(), [&answers](const Line& line) {
-    const auto fields = line.fields();
+  std::vector<std::string> without_numbers;
+  std::for_each(lines.begin() + 1, lines.end(), [&](const Line& line) {
+    const auto fields = line.fields(dialect);
     if (fields[0].empty()) line.refuse("no id", "the id of a vector");
     std::array<double, 4> numbers{};
-    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = line.number(header[i + 1], fields[i + 1]);
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = line.number(header[i + 1], fields[i + 1], dialect);
     const Answer answer{{numbers[0], numbers[1], numbers[2]}, numbers[3]};
     if (!answers.emplace(fields[0], answer).second)
       line.refuse(fmt::format("a second answer for '{}'", shortened(fields[0])), "one answer for each id");
+    if (!is_finite(answer)) without_numbers.push_back(fields[0]);
   });
+  if (dialect.separator != ',')
+    warnings.push_back(fmt::format("{}: read with {} between fields{}", input_name(path),
+                                   dialect.separator == ';' ? "semicolons" : "tabulators",
+                                   dialect.has_decimal_commas ? " and decimal commas" : ""));
+  if (!without_numbers.empty())
+    warnings.push_back(fmt::format("{}: {} of {} answers are not finite, and count as no digits; the first is {}",
+                                   input_name(path), without_numbers.size(), answers.size(),
+                                   shortened(without_numbers.front())));
   return answers;
 }
 

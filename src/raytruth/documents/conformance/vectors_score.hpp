@@ -21,7 +21,7 @@ struct Answer {
 /// colour's error is its largest channel's, its scale the largest channel of the certified colour; the opacity's scale
 /// is the certified opacity. Errors below the certified radius, or below 2^-53 of the scale, count as that much, which
 /// caps the digits at 15.95; an error larger than the scale has none. Where the scale is 0 an error within the radius
-/// has all digits, any other none.
+/// has all digits, any other none. An answer that is not finite has none.
 double digits_correct(const Answer& answer, const Certified& truth);
 
 /// One vector, and what was answered.
@@ -46,8 +46,10 @@ struct LevelScore {
 /// There must be vectors.
 std::vector<LevelScore> score(const std::vector<ScoredVector>& vectors);
 
-/// Reads answers as CSV (RFC 4180), with the header id,r,g,b,opacity. Throws InputError: file, line, what was found,
-/// what is allowed.
-std::map<std::string, Answer> read_answers(const std::string& path);
+/// Reads answers as CSV (RFC 4180), with the header id,r,g,b,opacity. What spreadsheets make of it is read too, with a
+/// warning: semicolons or tabulators between fields, and decimal commas with them; a byte order mark is passed over. A
+/// number that is not finite, or left out, is an answer without digits, with a warning. Throws InputError: file, line,
+/// what was found, what is allowed.
+std::map<std::string, Answer> read_answers(const std::string& path, std::vector<std::string>& warnings);
 
 }  // namespace raytruth

@@ -19,6 +19,7 @@ namespace raytruth {
 namespace {
 
 constexpr std::uint64_t deflate_most_ratio = 1032;
+constexpr std::array<unsigned char, 2> gzip_magic{0x1F, 0x8B};
 constexpr std::string_view readable = "a readable regular file is allowed";
 
 std::uint64_t regular_file_size(const std::filesystem::path& file) {
@@ -50,7 +51,7 @@ struct ByteStream::Inflation {
 
   z_stream state{};
   std::vector<unsigned char> input = std::vector<unsigned char>(std::size_t{1} << 16U);
-  bool is_complete = false;  // nothing was read since the end of a gzip stream, its checksum verified
+  bool is_complete = false;  // a gzip stream ended, its checksum verified, and no other has begun
 };
 
 ByteStream::ByteStream(std::filesystem::path file, std::uint64_t offset, bool gzip) : file_(std::move(file)) {
@@ -58,25 +59,59 @@ ByteStream::ByteStream(std::filesystem::path file, std::uint64_t offset, bool gz
   if (offset > size) {
     refuse(file_, fmt::format("the file ends after {} bytes", size), fmt::format("its data begin after {}", offset));
   }
-  bytes_left_in_file_ = size - offset;
+  bytes_in_file_ = size - offset;
   stream_.open(file_, std::ios::binary);
   if (!stream_) refuse(file_, std::generic_category().message(errno), readable);
   stream_.seekg(static_cast<std::streamoff>(offset));
-  if (gzip) inflation_ = std::make_unique<Inflation>();
+  if (!gzip) return;
+  std::array<unsigned char, gzip_magic.size()> first{};
+  read_file(first);
+  stream_.clear();
+  stream_.seekg(static_cast<std::streamoff>(offset));
+  bytes_read_ = 0;
+  if (first == gzip_magic) inflation_ = std::make_unique<Inflation>();
 }
 
 ByteStream::~ByteStream() = default;
 
 std::uint64_t ByteStream::most_bytes() const {
-  if (!inflation_) return bytes_left_in_file_;
+  if (!inflation_) return bytes_in_file_;
   constexpr auto largest = std::numeric_limits<std::uint64_t>::max();
-  return bytes_left_in_file_ > largest / deflate_most_ratio ? largest : bytes_left_in_file_ * deflate_most_ratio;
+  return bytes_in_file_ > largest / deflate_most_ratio ? largest : bytes_in_file_ * deflate_most_ratio;
 }
 
 std::size_t ByteStream::read_file(std::span<unsigned char> bytes) {
   stream_.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (stream_.bad()) refuse(file_, "reading failed", readable);
-  return static_cast<std::size_t>(stream_.gcount());
+  const auto count = static_cast<std::size_t>(stream_.gcount());
+  bytes_read_ += count;
+  return count;
+}
+
+/// Makes at least so many bytes of the file wait to be inflated; false where it has fewer left.
+bool ByteStream::fill_input(std::size_t least) {
+  auto& state = inflation_->state;
+  auto& input = inflation_->input;
+  while (state.avail_in < least) {
+    std::copy_n(state.next_in, state.avail_in, input.data());
+    state.next_in = input.data();
+    const auto more = read_file(std::span(input).subspan(state.avail_in));
+    if (more == 0) return false;
+    state.avail_in += static_cast<unsigned>(more);
+  }
+  return true;
+}
+
+/// Behind a gzip stream: passes over padding, and tells whether another stream follows. What else does is ignored.
+bool ByteStream::begins_next_gzip() {
+  auto& state = inflation_->state;
+  while (fill_input(1) && *state.next_in == 0) {
+    ++state.next_in;
+    --state.avail_in;
+  }
+  if (fill_input(gzip_magic.size()) && std::equal(gzip_magic.begin(), gzip_magic.end(), state.next_in)) return true;
+  ignored_bytes_ = state.avail_in + bytes_in_file_ - bytes_read_;
+  return false;
 }
 
 std::size_t ByteStream::read(std::span<unsigned char> bytes) {
@@ -85,15 +120,12 @@ std::size_t ByteStream::read(std::span<unsigned char> bytes) {
   auto& state = inflation_->state;
   std::size_t done = 0;
   while (done < bytes.size()) {
-    if (state.avail_in == 0) {
-      state.next_in = inflation_->input.data();
-      state.avail_in = static_cast<unsigned>(read_file(inflation_->input));
-      if (state.avail_in == 0) {
-        if (inflation_->is_complete) break;
-        refuse(file_, "the gzip data end early", allowed);
-      }
+    if (inflation_->is_complete) {
+      if (!begins_next_gzip()) break;
+      inflation_->is_complete = false;
+      inflateReset(&state);
     }
-    if (std::exchange(inflation_->is_complete, false)) inflateReset(&state);
+    if (!fill_input(1)) refuse(file_, "the gzip data end early", allowed);
     constexpr std::size_t most_per_call = std::size_t{1} << 30U;
     const auto part = bytes.subspan(done, std::min(bytes.size() - done, most_per_call));
     state.next_out = part.data();
@@ -118,5 +150,14 @@ void ByteStream::skip(std::uint64_t count) {
     count -= got;
   }
 }
+
+std::uint64_t ByteStream::count_rest() {
+  std::vector<unsigned char> passed_over(std::size_t{1} << 16U);
+  std::uint64_t count = 0;
+  while (const auto got = read(passed_over)) count += got;
+  return count;
+}
+
+bool is_gzip_file(const std::filesystem::path& file) { return ByteStream(file, 0, true).is_gzip(); }
 
 }  // namespace raytruth

@@ -80,6 +80,7 @@ VolumeDescription describe_volume(const Volume& volume) {
   description.intercept = volume.intercept;
   description.size = volume.grid.size;
   description.spacing = volume.grid.spacing;
+  description.has_spacing = volume.has_spacing;
   description.minimum = minimum;
   description.maximum = maximum;
   description.levels = count_levels(volume);
@@ -90,6 +91,7 @@ VolumeDescription describe_volume(const Volume& volume) {
     description.constant_layers[axis] = constant_layers(volume.grid, axis);
   }
   description.lost_first_byte = volume.lost_first_byte;
+  description.warnings = volume.warnings;
   return description;
 }
 

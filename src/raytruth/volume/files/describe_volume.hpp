@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "raytruth/volume/files/read_volume.hpp"
 
@@ -24,6 +25,7 @@ struct VolumeDescription {
   double intercept = 0;
   std::array<std::int64_t, 3> size{};
   std::array<double, 3> spacing{};
+  bool has_spacing = true;  // the file, or whoever asked for it, states the spacing
   double minimum = 0;
   double maximum = 0;
   std::uint64_t levels = 0;               // different values in use
@@ -33,6 +35,7 @@ struct VolumeDescription {
   /// How many whole layers, from each face inwards, hold one value only: [axis][0 low face, 1 high face].
   std::array<std::array<std::int64_t, 2>, 3> constant_layers{};
   bool lost_first_byte = false;
+  std::vector<std::string> warnings;  // of the reader
 };
 
 /// Describes `volume`, which has at least one voxel.

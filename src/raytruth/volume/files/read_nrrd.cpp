@@ -27,9 +27,10 @@ namespace {
 
 /// The fields that say how to read the voxels; the others are passed over.
 constexpr std::array fields_of_use{
-    nrrdField_type,      nrrdField_dimension,        nrrdField_space,    nrrdField_space_dimension, nrrdField_sizes,
-    nrrdField_spacings,  nrrdField_space_directions, nrrdField_kinds,    nrrdField_endian,          nrrdField_encoding,
-    nrrdField_line_skip, nrrdField_byte_skip,        nrrdField_data_file};
+    nrrdField_type,     nrrdField_dimension, nrrdField_space,     nrrdField_space_dimension,  nrrdField_sizes,
+    nrrdField_spacings, nrrdField_axis_mins, nrrdField_axis_maxs, nrrdField_space_directions, nrrdField_centers,
+    nrrdField_kinds,    nrrdField_endian,    nrrdField_encoding,  nrrdField_line_skip,        nrrdField_byte_skip,
+    nrrdField_data_file};
 
 /// A header, taken apart into its lines.
 struct Header {
@@ -152,6 +153,8 @@ void check_fields(const std::filesystem::path& file, const Header& header) {
         if (!number<std::int64_t>(value)) refuse_value("a whole number is allowed");
         break;
       case nrrdField_spacings:
+      case nrrdField_axis_mins:
+      case nrrdField_axis_maxs:
       case nrrdField_space_directions:
         for (const auto& word : words(value)) {
           if (word != "none" && !number<double>(word)) refuse_value("numbers are allowed");
@@ -180,7 +183,10 @@ std::string complaint_of_teem() {
 /// give to printf as a format.
 void parse(const std::filesystem::path& file, const Header& header, Nrrd& nrrd, NrrdIoState& state) {
   std::string text = header.magic + '\n';
+  const bool has_directions = header.fields.contains(nrrdField_space_directions);
   for (const int field : fields_of_use) {  // in this order: some need one before them
+    // Teem refuses ends of axes beside directions, which say more.
+    if (has_directions && (field == nrrdField_axis_mins || field == nrrdField_axis_maxs)) continue;
     if (field != nrrdField_data_file && header.fields.contains(field)) {
       text += fmt::format("{}: {}\n", airEnumStr(nrrdField, field), header.field(field));
     }
@@ -217,7 +223,8 @@ VoxelType voxel_type(const std::filesystem::path& file, const std::string& type)
     case nrrdTypeDouble:
       return VoxelType::float64;
     default:
-      refuse(file, fmt::format("the type is \"{}\"", printable(type)), "integer and floating types are allowed");
+      refuse(file, fmt::format("the type is \"{}\"", printable(type)),
+             fmt::format("integer and floating types are allowed; {}", npy_is_the_way_in));
   }
 }
 
@@ -230,16 +237,87 @@ Encoding encoding(const std::filesystem::path& file, const std::string& encoding
     case nrrdEncodingTypeAscii:
       return Encoding::ascii;
     default:
-      refuse(file, fmt::format("the encoding is \"{}\"", printable(encoding)), "raw, gzip and ascii are allowed");
+      refuse(file, fmt::format("the encoding is \"{}\"", printable(encoding)),
+             fmt::format("raw, gzip and ascii are allowed; {}", npy_is_the_way_in));
   }
 }
 
-/// Distance of neighbours along an axis: its spacing or the length of its direction; 1 if the header gives none.
-double spacing(const Nrrd& nrrd, unsigned axis) {
+using Direction = std::array<double, NRRD_SPACE_DIM_MAX>;
+
+bool has_direction(const Nrrd& nrrd, unsigned axis) {
+  return nrrd.spaceDim > 0 && AIR_EXISTS(nrrd.axis[axis].spaceDirection[0]);
+}
+
+/// What the ends of an axis make its spacing: centres of voxels stand on them (node), or they are the outer faces of
+/// voxels (cell), which is meant where the header does not say, as Teem has it. Nothing where it gives no two ends.
+std::optional<double> spacing_between_ends(const Nrrd& nrrd, unsigned axis) {
+  const auto& info = nrrd.axis[axis];
+  if (!AIR_EXISTS(info.min) || !AIR_EXISTS(info.max)) return std::nullopt;
+  const bool is_node = info.center == nrrdCenterNode && info.size > 1;
+  return (info.max - info.min) / static_cast<double>(is_node ? info.size - 1 : info.size);
+}
+
+/// Distance of neighbours along an axis: its spacing, the length of its direction or what its ends make of it. Nothing
+/// if the header gives none.
+std::optional<double> spacing(const Nrrd& nrrd, unsigned axis, Volume& volume) {
   double distance = 1;
-  std::array<double, NRRD_SPACE_DIM_MAX> direction{};
+  Direction direction{};
   const int status = nrrdSpacingCalculate(&nrrd, axis, &distance, direction.data());
-  return status == nrrdSpacingStatusNone || status == nrrdSpacingStatusUnknown || std::isnan(distance) ? 1 : distance;
+  const auto between_ends = spacing_between_ends(nrrd, axis);
+  if (status == nrrdSpacingStatusNone || status == nrrdSpacingStatusUnknown || std::isnan(distance)) {
+    if (between_ends && nrrd.axis[axis].center == nrrdCenterUnknown) {
+      volume.warnings.push_back(fmt::format(
+          "\"axis mins\" and \"axis maxs\" give axis {} an extent, and no \"centers\" say of what; outer faces "
+          "of voxels are taken, which makes the spacing {}",
+          axis, *between_ends));
+    }
+    return between_ends;
+  }
+  constexpr double tolerance = 1e-3;
+  if (between_ends && std::abs(std::abs(*between_ends) - std::abs(distance)) > tolerance * std::abs(distance)) {
+    volume.warnings.push_back(
+        fmt::format("axis {} has the spacing {}, and {} by \"axis mins\" and \"axis maxs\"; the first is taken", axis,
+                    distance, *between_ends));
+  }
+  return distance;
+}
+
+/// Warns where directions are not perpendicular: a grid of boxes is all that follows knows.
+void warn_of_shear(const Nrrd& nrrd, Volume& volume) {
+  std::vector<std::vector<double>> directions;
+  for (unsigned axis = 0; axis < nrrd.dim; ++axis) {
+    if (!has_direction(nrrd, axis)) continue;
+    const auto* const direction = nrrd.axis[axis].spaceDirection;
+    directions.emplace_back(direction, direction + nrrd.spaceDim);
+  }
+  if (auto warning = shear_warning(directions, "the space directions")) volume.warnings.push_back(std::move(*warning));
+}
+
+/// What an axis is, by its kind and its direction.
+StoredAxis stored_axis(const Nrrd& nrrd, unsigned axis, Volume& volume) {
+  const auto& info = nrrd.axis[axis];
+  StoredAxis result{.size = info.size};
+  const std::string kind = info.kind == nrrdKindUnknown ? "" : airEnumStr(nrrdKind, info.kind);
+  if (info.kind == nrrdKindTime || info.kind == nrrdKindList) {
+    result.kind = StoredAxis::Kind::time;
+    result.what = fmt::format("axis {} has the kind {}: it holds {} volumes", axis, kind, info.size);
+    return result;
+  }
+  if (info.kind != nrrdKindUnknown && nrrdKindIsDomain(info.kind) == 0) {
+    result.kind = StoredAxis::Kind::other;
+    result.what = fmt::format("axis {} holds the {} parts of a {}", axis, info.size, kind);
+    return result;
+  }
+  if (nrrd.spaceDim > 0 && !has_direction(nrrd, axis)) {
+    result.kind = StoredAxis::Kind::other;
+    result.what =
+        fmt::format("axis {} has the direction none, so it is no axis of space, and its size is {}", axis, info.size);
+    return result;
+  }
+  const auto distance = spacing(nrrd, axis, volume);
+  result.spacing = distance.value_or(1);
+  if (!distance) volume.has_spacing = false;
+  return result;
 }
 
 /// The name of one of numbered files: `pattern` has one %d, perhaps with a width, such as %03d. Nothing if it has not.
@@ -323,9 +401,19 @@ void skip_lines(StoredVolume::Share& share, unsigned lines) {
   }
 }
 
+/// With "byte skip: -1" the data are the last bytes, of what gzip data are inflated to.
+std::uint64_t bytes_before_the_last(const StoredVolume::Share& share, std::uint64_t wanted, Encoding encoding) {
+  const auto bytes = ByteStream(share.file, share.offset, encoding == Encoding::gzip).count_rest();
+  if (bytes < wanted) {
+    refuse(share.file, fmt::format("the file has {} bytes of data", bytes),
+           fmt::format("the header announces {}", wanted));
+  }
+  return bytes - wanted;
+}
+
 }  // namespace
 
-StoredVolume read_nrrd_header(const std::filesystem::path& file) {
+StoredVolume read_nrrd_header(const std::filesystem::path& file, const VolumeChoices& choices) {
   const Header header = read_lines(file);
   check_fields(file, header);
 
@@ -341,36 +429,29 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
   parse(file, header, *nrrd, *state);
   volume.endian = state->endian == airEndianBig ? std::endian::big : std::endian::little;
   std::vector<StoredAxis> axes;
-  axes.reserve(nrrd->dim);
-  for (unsigned axis = 0; axis < nrrd->dim; ++axis) axes.push_back({nrrd->axis[axis].size, spacing(*nrrd, axis)});
-  for (const auto axis : set_axes(volume, axes)) {
-    const int kind = nrrd->axis[axis].kind;
-    if (kind != nrrdKindUnknown && nrrdKindIsDomain(kind) == 0) {
-      refuse(file, fmt::format("axis {} holds the parts of a {}", axis, airEnumStr(nrrdKind, kind)),
-             "scalar volumes are allowed");
-    }
+  for (unsigned axis = 0; axis < nrrd->dim; ++axis) axes.push_back(stored_axis(*nrrd, axis, volume));
+  warn_of_shear(*nrrd, volume);
+  if (header.fields.contains(nrrdField_space_directions) && header.fields.contains(nrrdField_axis_mins)) {
+    volume.warnings.emplace_back("\"axis mins\" are passed over, for the header has \"space directions\"");
   }
+  set_axes(stored, axes, choices);
 
   stored.shares = data_files(file, header);
-  if (voxel_count(volume) % stored.shares.size() != 0) {
-    refuse(file, fmt::format("{} data files hold {} voxels", stored.shares.size(), voxel_count(volume)),
+  const auto count = stored_count(stored);
+  if (count % stored.shares.size() != 0) {
+    refuse(file, fmt::format("{} data files hold {} voxels", stored.shares.size(), count),
            "an equal share each is allowed");
   }
-  const auto piece_bytes = voxel_count(volume) / stored.shares.size() * static_cast<unsigned>(facts(volume.type).bytes);
+  const auto share_bytes = count / stored.shares.size() * static_cast<unsigned>(facts(volume.type).bytes);
   for (auto& share : stored.shares) {
     skip_lines(share, state->lineSkip);
     if (state->byteSkip >= 0) {
       share.skip = static_cast<std::uint64_t>(state->byteSkip);
-    } else if (state->byteSkip == -1 && volume.encoding == Encoding::raw) {
-      // With -1 the data are the last bytes of the file.
-      const auto bytes = ByteStream(share.file, share.offset).most_bytes();
-      if (bytes < piece_bytes) {
-        refuse(share.file, fmt::format("the file has {} bytes of data", bytes),
-               fmt::format("the header announces {}", piece_bytes));
-      }
-      share.skip = bytes - piece_bytes;
+    } else if (state->byteSkip == -1 && volume.encoding != Encoding::ascii) {
+      share.skip = bytes_before_the_last(share, share_bytes, volume.encoding);
     } else {
-      refuse(file, fmt::format("\"byte skip\" is {}", state->byteSkip), "0 and more, and -1 for raw data, are allowed");
+      refuse(file, fmt::format("\"byte skip\" is {}", state->byteSkip),
+             "0 and more, and -1 for raw and gzip data, are allowed");
     }
   }
   return stored;

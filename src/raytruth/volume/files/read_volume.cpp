@@ -2,36 +2,73 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
 
+#include "raytruth/volume/files/byte_stream.hpp"
 #include "raytruth/volume/files/refuse.hpp"
 #include "raytruth/volume/files/stored_volume.hpp"
 
 namespace raytruth {
 
+namespace {
+
+/// The format whose files begin as this one does, gzip data inflated; null: none.
+const VolumeFormat* format_of_content(const std::filesystem::path& file) {
+  constexpr std::string_view nrrd = "NRRD0";
+  constexpr std::string_view npy = "\x93NUMPY";
+  constexpr std::array<std::string_view, 4> nifti{
+      std::string_view("\x5C\x01\0\0", 4), std::string_view("\0\0\x01\x5C", 4), std::string_view("\x1C\x02\0\0", 4),
+      std::string_view("\0\0\x02\x1C", 4)};
+  std::array<unsigned char, 8> bytes{};
+  const auto length = ByteStream(file, 0, true).read(bytes);
+  const std::string_view first(reinterpret_cast<const char*>(bytes.data()), length);
+  if (first.starts_with(nrrd)) return format_of_name(".nrrd");
+  if (first.starts_with(npy)) return format_of_name(".npy");
+  const auto begins_so = [first](std::string_view magic) { return first.starts_with(magic); };
+  return std::any_of(nifti.begin(), nifti.end(), begins_so) ? format_of_name(".nii") : nullptr;
+}
+
+}  // namespace
+
 std::span<const VolumeFormat> volume_formats() {
   static constexpr std::array formats{
       VolumeFormat{".nrrd", read_nrrd_header}, VolumeFormat{".nhdr", read_nrrd_header},
       VolumeFormat{".nii", read_nifti_header}, VolumeFormat{".nii.gz", read_nifti_header},
-      VolumeFormat{".hdr", read_nifti_header},
+      VolumeFormat{".hdr", read_nifti_header}, VolumeFormat{".npy", read_npy_header},
   };
   return formats;
 }
 
-Volume read_volume(const std::filesystem::path& file) {
-  const auto file_name = file.filename().string();
-  std::vector<std::string_view> known;
-  for (const VolumeFormat& format : volume_formats()) {
-    if (file_name.ends_with(format.extension)) return read_voxels(format.read_header(file));
-    known.push_back(format.extension);
+const VolumeFormat* format_of_name(std::string_view file_name) {
+  const auto found = std::find_if(
+      volume_formats().begin(), volume_formats().end(),
+      [file_name](const VolumeFormat& format) { return boost::algorithm::iends_with(file_name, format.extension); });
+  return found == volume_formats().end() ? nullptr : &*found;
+}
+
+StoredVolume read_volume_header(const std::filesystem::path& file, const VolumeChoices& choices) {
+  if (const auto* const format = format_of_name(file.filename().string())) return format->read_header(file, choices);
+  if (const auto* const format = format_of_content(file)) {
+    StoredVolume stored = format->read_header(file, choices);
+    stored.volume.warnings.push_back(
+        fmt::format("the name does not tell the format; the first bytes are those of {}", stored.volume.format));
+    return stored;
   }
+  std::vector<std::string_view> known;
+  for (const VolumeFormat& format : volume_formats()) known.push_back(format.extension);
   const std::string_view last = known.back();
   known.pop_back();
-  refuse(file, "the name does not tell the format", fmt::format("{} and {} are allowed", fmt::join(known, ", "), last));
+  refuse(file, "neither the name nor the first bytes tell the format",
+         fmt::format("{} and {} are allowed", fmt::join(known, ", "), last));
+}
+
+Volume read_volume(const std::filesystem::path& file, const VolumeChoices& choices, std::uint64_t memory_limit) {
+  return read_voxels(read_volume_header(file, choices), choices, memory_limit);
 }
 
 void repair_first_byte(Volume& volume, unsigned char first_byte) {
