@@ -122,7 +122,7 @@ PiecewiseLinear read_transfer(const JsonReader& json, Experiment& experiment) {
   if (entry.make == nullptr) {
     json.only({"name", "kind", "transfer_function"});
     const JsonReader place = json.at("transfer_function");
-    PiecewiseLinear transfer = read_transfer_function(place, experiment.warnings);
+    PiecewiseLinear transfer = read_transfer_function(place, {}, experiment.warnings).transfer;
     place.blame_for([&] { return RayIntegral(transfer, experiment.emission); });  // refuses what it cannot enclose
     return transfer;
   }

@@ -55,6 +55,10 @@ class CommandOptions {
             const std::string& summary);
   void positive_number(const std::string& name, double& value, const std::string& summary);
 
+  void positive_number(const std::string& name, std::optional<double>& value, const std::string& summary);
+  /// Two numbers, or none.
+  void pair(const std::string& name, const std::string& type, std::vector<double>& values, const std::string& summary);
+
   void flag(const std::string& name, bool& value, const std::string& summary);
 
   // Options that several commands have.

@@ -43,6 +43,7 @@ Json description(const TableCase& asked, const MadeTable& table, const std::file
              "entry i of n stands for low + (high - low) i / (n - 1); as a texture it has its centre at "
              "(i + 1/2) / n"}};
   if (asked.transfer) text["colors"] = "opacity-weighted: composite with C += T C_slab, T *= 1 - opacity";
+  if (!asked.transfer_description.is_null()) text["transfer_function"] = asked.transfer_description;
   text["error"] = table.error;
   text["case"] = asked.json.json();
   text["build"] = build_identity();

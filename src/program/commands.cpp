@@ -15,12 +15,14 @@ extern const Command render_command;
 extern const Command run_command;
 extern const Command score_command;
 extern const Command table_command;
+extern const Command transfer_command;
 extern const Command vectors_command;
 
 std::span<const Command* const> commands() {
   static constexpr std::array list{
-      &run_command,  &list_command, &eval_command, &render_command,  &compare_command, &table_command,
-      &plot_command, &diff_command, &info_command, &vectors_command, &score_command,   &ledger_command,
+      &run_command,     &list_command,  &eval_command,   &render_command, &compare_command,
+      &table_command,   &plot_command,  &diff_command,   &info_command,   &transfer_command,
+      &vectors_command, &score_command, &ledger_command,
   };
   return list;
 }

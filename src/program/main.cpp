@@ -152,6 +152,16 @@ void CommandOptions::positive_number(const std::string& name, double& value, con
   parser_.add_option(name, value, summary)->type_name("X")->check(CLI::PositiveNumber);
 }
 
+void CommandOptions::positive_number(const std::string& name, std::optional<double>& value,
+                                     const std::string& summary) {
+  parser_.add_option(name, value, summary)->type_name("X")->check(CLI::PositiveNumber);
+}
+
+void CommandOptions::pair(const std::string& name, const std::string& type, std::vector<double>& values,
+                          const std::string& summary) {
+  parser_.add_option(name, values, summary)->type_name(type)->expected(2);
+}
+
 void CommandOptions::flag(const std::string& name, bool& value, const std::string& summary) {
   parser_.add_flag(name, value, summary);
 }

@@ -233,7 +233,58 @@ IMAGES = {
 }
 
 
-CHECKS = {**FILES, **IMAGES}
+# --- presets of other programs ---
+
+
+def presets(opacities=None, colors=None, says=(), options=()):
+    """The opacities over 2 voxels, the colours, and words of what is said of the file."""
+
+    def check(case):
+        answer, said = case.warned("render", "scene.json", "-o", "o.npy", *options)
+        image = numpy.load(case.folder / "o.npy")[0]
+        if opacities is not None:
+            numpy.testing.assert_allclose(image[:, 3], opacities, atol=1e-6)
+        if colors is not None:
+            numpy.testing.assert_allclose(image[:, :3], image[:, 3:] * colors, atol=1e-4)
+        for words in says:
+            case.assertIn(words, said + json.dumps(answer["transfer_function"]))
+
+    return check
+
+
+def between(share):
+    """Of the way from blue to red."""
+    return [share, 0, 1 - share]
+
+
+def table_of_a_preset(case):
+    case.output_of("table", "c.json", "-o", "t.npy")
+    understood = json.loads((case.folder / "t.npy.json").read_text())["transfer_function"]
+    case.assertEqual((understood["format"], understood["unit_length"]), ("ParaView colour map", 1))
+    table = numpy.load(case.folder / "t.npy")
+    # On the diagonal the scalar is constant, so a slab of the unit's length has the opacity that the file states.
+    numpy.testing.assert_allclose(table[range(16), range(16), 3], numpy.arange(16) / 15, atol=1e-6)
+
+
+PRESETS = {
+    "opacity_file_own_range": presets([0, 0.4375, 0.75, 0.96], options=("--opacity", "o.json")),
+    "opacity_rounded_up": presets([0, 0.4375, 0.75], says=["1.0000001 among the opacities is taken as 1"]),
+    "paraview_log_scale": presets(
+        colors=[between(0), between(1 / 3), between(2 / 3), between(1)], says=["over the logarithm of the scalar"]
+    ),
+    "paraview_preset_other_range": presets([0, 0.4375, 0.75, 1], says=["stretched over the data's 0 to 100"]),
+    "paraview_xml_map": presets([0, 0.4375, 0.75], says=["ParaView colour map (XML)"]),
+    "slicer_point_above_zero": presets([0.4524, 0.5775, 0.75, 0.75], says=["a jump"]),
+    "slicer_vp_json": presets(
+        [0, 0.234375, 0.4375, 0.75], [between(0.25 * i) for i in (0, 1, 2, 4)], says=["3D Slicer", '"shininess": 1']
+    ),
+    "table_of_a_preset": table_of_a_preset,
+    "unit_distance_half_mm": presets([0, 0.125, 0.25, 0.5], says=['"unit_length": 2']),
+    "unsorted_paraview": presets([0, 0.4375, 0.75], says=["they are sorted", '"stretched" stretches them']),
+}
+
+
+CHECKS = {**FILES, **IMAGES, **PRESETS}
 
 
 class Cases(Case):
@@ -242,7 +293,7 @@ class Cases(Case):
 
 
 def test_of(name):
-    @unittest.skipIf(name in IMAGES and numpy is None, "numpy (Debian: python3-numpy) is not installed")
+    @unittest.skipIf(name not in FILES and numpy is None, "numpy (Debian: python3-numpy) is not installed")
     def test(self):
         self.take(name)
         CHECKS[name](self)

@@ -373,7 +373,7 @@ class Refusals(ProgramTest):
 
     def test_bad_images(self):
         self.assert_refused(self.run_program("render", self.write("s.json", SCENE), "-o", "i.jpg"), ".png")
-        self.assert_refused(self.run_program("render", "s.json", "-o", "no/i.npy"), "no/i.npy")
+        self.assert_refused(self.run_program("render", "s.json", "-o", "no/i.npy"), "no/i.npy", code=4)
         self.assert_refused(self.run_program("render", "absent.json", "-o", "i.npy"), "absent.json")
         self.assert_refused(self.run_program("render", self.write("s.json", b"{"), "-o", "i.npy"), "s.json")
 

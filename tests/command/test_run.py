@@ -222,7 +222,7 @@ class Files(ProgramTest):
 
     def test_output_that_cannot_be_written(self):
         self.assert_refused(self.run_program("run", "small.json", "-o", "small.json"), "small.json", code=4)
-        self.assert_refused(self.run_program("run", "small.json", "-o", "/proc/out"), "/proc/out")
+        self.assert_refused(self.run_program("run", "small.json", "-o", "/proc/out"), "/proc/out", code=4)
         full = subprocess.run([PROGRAM, "run", "small.json"], cwd=self.folder, stdout=open("/dev/full", "wb"), stderr=subprocess.PIPE)
         self.assertEqual(full.returncode, 4)
         self.assertIn(b"standard output", full.stderr)

@@ -100,7 +100,7 @@ class Reading(ProgramTest):
 
     def test_colour_spaces(self):
         blue_to_red = [0, 0, 0, 1, 1, 1, 0, 0]
-        half = {"HSV": [0, 1, 0], "Step": [1, 0, 0], "RGB": [0.5, 0, 0.5]}  # hue 2/3 to 0 is green half-way
+        half = {"HSV": [1, 0, 1], "Step": [1, 0, 0], "RGB": [0.5, 0, 0.5]}  # vtk.js takes the shorter way, by magenta
         # By the CSS Color 4 formulas of CIE Lab with D65, independently of this program.
         half["Lab"] = [0.7930, 0.0, 0.5371]
         for space, color in half.items():
@@ -117,6 +117,125 @@ class Reading(ProgramTest):
         _, pixel = self.render(self.write("a.itf", INVIWO.replace('w="0.5"', 'w="1"')))
         self.assertEqual(pixel[3], 1)
 
+    def test_lengths_are_those_of_the_world(self):
+        preset = self.write("a.json", PRESET)
+        for spacing, unit_length in (([0.5, 0.5, 0.5], 2), ([2, 4, 3], 0.5)):
+            x, y, z = spacing
+            volume = {**SCENE["volume"], "spacing": spacing}
+            camera = {"eye": [x, y / 2, -9], "target": [x, y / 2, 0], "up": [0, 1, 0], "height": x, "size": [2, 1]}
+            description, _ = self.render(preset, volume=volume, camera=camera)
+            self.assertEqual(description["unit_length"], unit_length)
+            self.assertIn("world unit", description["opacity"])
+            _, pixel = self.render({"file": "a.json", "unit_length": 4}, volume=volume, camera=camera)
+            self.assertAlmostEqual(float(pixel[3]), 1 - 0.75 ** (2 * z / (4 * min(spacing))), places=6)
+
+    def test_what_paraview_says_of_scalars(self):
+        points = {"Name": "p", "RGBPoints": [10, 1, 0, 0, 20, 1, 0.5, 0], "Points": [10, 0, 0.5, 0, 20, 0.5, 0.5, 0]}
+        stretched, as_stated = self.opacity_over(1), 0  # the scene's data are 0 to 1, the ray's scalar 1/2
+        for document, members, opacity in (
+            (points, {}, stretched),
+            ({**points, "AbsoluteRange": True}, {}, as_stated),
+            ({**points, "AbsoluteRange": True}, {"scalars": "stretched"}, stretched),
+            (points, {"scalars": "as_stated"}, as_stated),
+            (points, {"range": [0, 2]}, self.opacity_over(1, 0.25)),
+            ({**PRESET, "RGBPoints": [0, 1, 0, 0, 2, 1, 0.5, 0], "OpacityPoints": [0, 0, 2, 1], "AbsoluteRange": False}, {}, self.opacity_over(1, 1)),
+            ({**PRESET, "RGBPoints": [0, 1, 0, 0, 2, 1, 0.5, 0], "OpacityPoints": [0, 0, 2, 1]}, {}, self.opacity_over(1)),
+        ):
+            with self.subTest(document=document, members=members):
+                _, pixel = self.render({"file": self.write("a.json", document), **members})
+                self.assertAlmostEqual(float(pixel[3]), opacity, places=6)
+
+    def test_what_other_parsers_of_json_take(self):
+        text = json.dumps([PRESET])
+        for written in (text[:-2] + ',}, // ,]"\n ]', "\ufeff" + text[:-1].replace("],", '], /* , ]" */', 1) + ", /* */ ]"):
+            _, pixel = self.render(self.write("a.json", written.encode()))
+            self.assert_pixel(pixel, self.opacity_over(1), 0.25)
+
+    def test_extensions_in_capital_letters(self):
+        _, pixel = self.render(self.write("A.VP", VP))
+        self.assert_pixel(pixel, self.opacity_over(1), 0.25)
+
+    def test_hues(self):
+        document = {"Name": "hues", "ColorSpace": "HSV", "RGBPoints": [0, 0, 0, 1, 1, 1, 0, 0], "Points": [0, 0.5, 0.5, 0, 1, 0.5, 0.5, 0]}
+        vtk_js = {key: value for key, value in document.items() if key != "Points"} | {"OpacityPoints": [0, 0.5, 1, 0.5]}
+        for transfer, color in (
+            (document, [0, 1, 0]),
+            ({**document, "HSVWrap": 1}, [1, 0, 1]),
+            (vtk_js, [1, 0, 1]),
+            ({**vtk_js, "HSVWrap": False}, [0, 1, 0]),
+        ):
+            _, pixel = self.render(self.write("map.json", transfer))
+            numpy.testing.assert_allclose(pixel[:3] / pixel[3], color, atol=3e-3)
+        xml_map = '<ColorMaps><ColorMap name="h" space="{}"><Point x="0" o="0.5" r="0" g="0" b="1"/><Point x="1" o="0.5" r="1" g="0" b="0"/></ColorMap></ColorMaps>'
+        for space, color in (("HSV", [0, 1, 0]), ("Wrapped", [1, 0, 1])):
+            _, pixel = self.render(self.write("map.xml", xml_map.format(space)))
+            numpy.testing.assert_allclose(pixel[:3] / pixel[3], color, atol=3e-3)
+
+    def test_light_that_is_not_taken_is_told(self):
+        scene = self.write("scene.json", changed(SCENE, "/transfer_function", self.write("a.vp", VP)))
+        done = self.run_program("render", scene, "-o", "i.npy")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn('"shading": {"light":[0,0,1],"ambient":0.1,"diffuse":0.9,"specular":0.2,"shininess":10', done.stderr.decode())
+        shading = json.loads(done.stderr.decode().split('"shading": ')[1].splitlines()[0])
+        self.json_of("render", self.write("lit.json", {**SCENE, "shading": shading}), "-o", "i.npy")
+
+    def test_unit_distance_of_a_property(self):
+        component = {
+            "scalarOpacityUnitDistance": 4,
+            "scalarOpacity": {"points": [{"x": 0, "y": 0}, {"x": 1, "y": 0.5}]},
+            "rgbTransferFunction": {"points": [{"x": 0, "color": [1, 0, 0]}, {"x": 1, "color": [1, 0.5, 0]}]},
+            "gradientOpacity": {"points": [{"x": 0, "y": 0}, {"x": 1, "y": 1}]},
+            "disableGradientOpacity": True,
+        }
+        document = {"volumeProperties": [{"effectiveRange": [0, 1], "components": [component]}]}
+        description, pixel = self.render(self.write("a.vp.json", document))
+        self.assert_pixel(pixel, self.opacity_over(4), 0.25)
+        self.assertEqual(description["ignored"], ["effectiveRange"])
+        component["disableGradientOpacity"] = False
+        scene = self.write("scene.json", changed(SCENE, "/transfer_function", self.write("a.vp.json", document)))
+        self.assert_refused(self.run_program("render", scene, "-o", "i.npy"), "gradient")
+
+    def test_rays_and_tables_take_presets(self):
+        self.write("a.json", {"Name": "p", "RGBPoints": [0, 1, 0, 0, 1, 1, 0.5, 0], "Points": [0, 0, 0.5, 0, 1, 0.5, 0.5, 0]})
+        ray = {
+            "signal": {"kind": "piecewise_polynomial", "breaks": [0, 2], "coefficients": [[0.5]]},
+            "transfer_function": {"file": "a.json"},
+            "schemes": ["reference"],
+        }
+        answer = self.json_of("eval", self.write("ray.json", ray))
+        self.assertAlmostEqual(answer["reference"]["opacity"], self.opacity_over(1), places=14)
+        self.assertEqual(answer["transfer_function"]["unit_length"], 1)
+        grid = {"size": [2, 2, 2], "values": [0, 0, 0, 0, 10, 10, 10, 10]}
+        signal = {"kind": "trilinear", "volume": grid, "origin": [0.5, 0.5, 0.5], "direction": [1, 0, 0], "length": 0.5}
+        answer = self.json_of("eval", self.write("ray.json", {**ray, "signal": signal}))
+        self.assertAlmostEqual(answer["reference"]["opacity"], 1 - 0.75**0.5, places=14)  # 0 to 1 stretched over 0 to 10
+        table = {"transfer_function": self.write("a.tfi", VOREEN), "builder": "exact", "size": 4, "length": 1, "range": [0, 1]}
+        self.assert_refused(self.run_program("table", self.write("t.json", table), "-o", "t.npy"), "longest side", '"unit_length"')
+        table["transfer_function"] = {"file": "a.tfi", "unit_length": 1, "range": [0, 1]}
+        self.output_of("table", self.write("t.json", table), "-o", "t.npy")
+        self.assertAlmostEqual(float(numpy.load(self.folder / "t.npy")[3, 3, 3]), 102 / 255, places=6)
+
+    def test_shown_and_written(self):
+        self.write("presets.xml", SLICER)
+        self.assertIn("edges", self.output_of("transfer", "presets.xml"))
+        self.assertEqual([item["name"] for item in self.json_of("transfer", "presets.xml", "--json")], ["plain", "edges"])
+        shown = self.output_of("transfer", "presets.xml", "--preset", "plain", "-o", "own.json")
+        for words in ("3D Slicer volume property", "unit length       1.0\n", "range             0.0, 1.0\n", "red, green, blue"):
+            self.assertIn(words, shown)
+        _, of_preset = self.render({"file": "presets.xml", "preset": "plain"})
+        _, of_own = self.render("own.json")
+        numpy.testing.assert_array_equal(of_own, of_preset)
+        again = self.json_of("transfer", "own.json", "--json")
+        self.assertEqual({key: again[key] for key in ("points", "unit_length")}, json.loads((self.folder / "own.json").read_text()))
+        self.assert_refused(self.run_program("transfer", "presets.xml", "-o", "x.json"), "--preset")
+        self.assert_refused(self.run_program("transfer", "presets.xml", "--preset", "plan"), "perhaps plain")
+        self.assert_refused(self.run_program("transfer", "absent.xml"), "absent.xml")
+        self.write("colors.json", COLORS)
+        self.write("many.json", [{"Name": "a", "OpacityPoints": [10, 0, 20, 1]}, {"Name": "b", "OpacityPoints": [10, 0, 20, 0.5]}])
+        self.assert_refused(self.run_program("transfer", "colors.json", "--opacity", "many.json"), "opacity_preset")
+        chosen = self.json_of("transfer", "colors.json", "--opacity", "many.json", "--opacity-preset", "b", "--json")
+        self.assertEqual([point["opacity"] for point in chosen["points"]], [0, 0.5])
+
     @unittest.skipUnless(SAMPLES.is_dir(), "needs samples of other programs' files")
     def test_samples(self):
         count = 0
@@ -131,7 +250,11 @@ class Reading(ProgramTest):
             if "OpacityPoints" in preset:
                 self.render({"file": str(SAMPLES / "volview/MedicalColorPresets.json"), "preset": preset["Name"]})
                 count += 1
-        self.assertGreater(count, 60)
+        for name in ("paraview/ColorMaps.json", "paraview-glance/Presets.json"):  # the first with a comma that JSON has not
+            listed = self.json_of("transfer", str(SAMPLES / name), "--json")
+            self.assertTrue(all("problem" not in item or "categories" in item["problem"] for item in listed))
+            count += len(listed)
+        self.assertGreater(count, 280)
 
 
 class Refusals(ProgramTest):
@@ -144,7 +267,11 @@ class Refusals(ProgramTest):
             ("a.vp", VP.replace("4 0 0 1 0.5", "5 0 0 1 0.5"), "scalarOpacity"),
             ("a.vp", VP.replace("4 0 0 1 0.5", "4 0 0 1 nan"), "finite"),
             ("a.vp", VP.replace("4 0 0 1 0.5", "4 0 0 1 2"), "opacity 2"),
-            ("a.vp", VP.replace("4 0 0 1 0.5", "4 1 0 0 0.5"), "ascending"),
+            ("a.vp.json", {"volumeProperties": []}, "/volumeProperties"),
+            ("a.vp.json", {"volumeProperties": [{"components": [{}]}]}, "/scalarOpacity"),
+            ("a.xml", '<ColorMaps><ColorMap space="XYZ"><Point x="0" o="0" r="0" g="0" b="0"/></ColorMap></ColorMaps>', "@space"),
+            ("a.xml", '<ColorMaps><ColorMap><Point x="0" o="1" r="0" g="0" b="0"/></ColorMap></ColorMaps>', "without opacity"),
+            ("a.json", {**PRESET, "UseLogScale": 1}, "logarithm"),
             ("a.vp", "1\n1\n", "lines"),
             ("a.tfi", VOREEN.replace('r="255"', 'r="red"'), "red"),
             ("a.tfi", VOREEN.replace('r="255"', 'r="256"'), "from 0 to 1"),

@@ -90,6 +90,12 @@ void check_values(const JsonReader& json, const Chain<Degree>& signal) {
         json.refuse(fmt::format("values up to {}", value), "a signal of values up to 2^900 in magnitude");
 }
 
+/// Whether a scheme is asked for, beside the reference.
+bool names_a_scheme(const Case& ray) {
+  return std::any_of(ray.schemes.begin(), ray.schemes.end(),
+                     [](const std::string& scheme) { return scheme != "reference"; });
+}
+
 bool is_refused(const Json& answer) { return answer.contains("status") && answer["status"] == "refused"; }
 
 template <int Degree>
@@ -174,7 +180,7 @@ template <int Degree>
 class SchemeAnswers {
  public:
   SchemeAnswers(const Case& ray, const Chain<Degree>& signal, const Certified* truth) : signal_(signal), truth_(truth) {
-    ray.json.at("sampling").blame_for([&] { take_samples(signal, ray.sampling, samples_); });
+    ray.json.at("sampling").blame_for([&] { take_samples(signal, *ray.sampling, samples_); });
     if (truth != nullptr) integrate_.emplace(*ray.transfer, ray.emission);
   }
 
@@ -207,9 +213,17 @@ Case CaseReader::read(const JsonReader& json, std::vector<std::string>& warnings
   check_form(json, "case/1");
   const JsonReader signal = json.at("signal");
   const std::string kind = signal.at("kind").word(names_of(catalogue::signals));
-  Case ray{json, read_sampling(json.at("sampling")),
-           read_schemes(json.at("schemes"), names_of(catalogue::integral_schemes())), std::nullopt};
-  if (const auto transfer = json.find("transfer_function")) ray.transfer = read_transfer_function(*transfer, warnings);
+  Case ray{json, std::nullopt, read_schemes(json.at("schemes"), names_of(catalogue::integral_schemes())), std::nullopt};
+  if (json.find("sampling") || names_a_scheme(ray)) ray.sampling = read_sampling(json.at("sampling"));
+  const bool has_volume = kind == "trilinear" || kind == "tricubic";
+  if (const auto transfer = json.find("transfer_function")) {
+    std::vector<std::string> read_again;  // the signal tells them
+    std::optional<TransferVolume> volume;
+    if (has_volume && is_of_another_program(*transfer)) volume = transfer_volume(read_volume_of(signal, read_again));
+    TransferDocument read = read_transfer_function(*transfer, {.volume = volume ? &*volume : nullptr}, warnings);
+    ray.transfer = std::move(read.transfer);
+    if (read.is_of_another_program) ray.transfer_description = std::move(read.description);
+  }
   ray.emission = read_emission(json);
   // RayIntegral refuses numbers that it cannot calculate with.
   if (ray.transfer) json.at("transfer_function").blame_for([&] { return RayIntegral(*ray.transfer, ray.emission); });
@@ -270,13 +284,17 @@ Json evaluate(const Case& ray) {
       [&ray](const auto& signal) -> Json {
         std::optional<Certified> truth;
         if (ray.transfer) truth = truth_of(ray, signal);
-        SchemeAnswers answer_of(ray, signal, truth ? &*truth : nullptr);
         Json schemes = Json::object();
-        for (const std::string& scheme : ray.schemes)
-          if (scheme != "reference") schemes[scheme] = answer_of(scheme);
-        return {{"length", signal.length()},
-                {"reference", truth ? truth_json(*truth) : refused(why_no_integral)},
-                {"schemes", std::move(schemes)}};
+        if (names_a_scheme(ray)) {
+          SchemeAnswers answer_of(ray, signal, truth ? &*truth : nullptr);
+          for (const std::string& scheme : ray.schemes)
+            if (scheme != "reference") schemes[scheme] = answer_of(scheme);
+        }
+        Json answer{{"length", signal.length()},
+                    {"reference", truth ? truth_json(*truth) : refused(why_no_integral)},
+                    {"schemes", std::move(schemes)}};
+        if (!ray.transfer_description.is_null()) answer["transfer_function"] = ray.transfer_description;
+        return answer;
       },
       ray.signal);
 }

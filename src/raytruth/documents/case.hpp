@@ -11,7 +11,7 @@
 #include "raytruth/transfer/emission.hpp"
 #include "raytruth/transfer/piecewise_linear.hpp"
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include <optional>
 #include <string>
@@ -24,9 +24,11 @@ namespace raytruth {
 /// A ray for `eval`; experiments/schemas/case.json describes its JSON.
 struct Case {
   JsonReader json;
-  Sampling sampling;
+  std::optional<Sampling> sampling;  ///< none: the reference alone is asked for
   std::vector<std::string> schemes;  ///< of the catalogue, or "reference"
   std::optional<PiecewiseLinear> transfer;
+  nlohmann::ordered_json transfer_description =
+      {};  ///< of another program's file; null: the points are of this program
   Emission emission = Emission::associated;
   std::variant<Chain<3>, Chain<largest_degree>> signal = {};
   SignalError signal_error = {};                                                ///< of the chain
@@ -38,7 +40,7 @@ class CaseReader {
  public:
   explicit CaseReader(VolumeAccess volumes) : volumes_(std::move(volumes)) {}
 
-  /// Adds a line to `warnings` where an opacity is clamped or a volume looks damaged. Throws InputError.
+  /// Adds a line to `warnings` for what of a transfer function or a volume was mended or left out. Throws InputError.
   Case read(const JsonReader& json, std::vector<std::string>& warnings);
 
  private:

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace raytruth {
 
@@ -54,11 +55,56 @@ PiecewiseLinear read_points(const JsonReader& json) {
   return json.find("unit_length") ? read_opacity_points(json) : read_extinction_points(json);
 }
 
+TransferFileRequest read_request(const JsonReader& json, const TransferContext& context) {
+  TransferFileRequest request{.ignores_gradient_opacity = context.ignores_gradient_opacity};
+  if (json.is_string()) {
+    request.file = json.resolve(json.text());
+  } else {
+    json.only(
+        {"file", "preset", "opacity", "opacity_preset", "range", "scalars", "unit_length", "ignore_gradient_opacity"});
+    request.file = json.resolve(json.at("file").text());
+    if (const auto preset = json.find("preset")) request.preset = preset->text();
+    if (const auto opacity = json.find("opacity")) request.opacity = json.resolve(opacity->text());
+    if (const auto preset = json.find("opacity_preset")) request.opacity_preset = preset->text();
+    if (const auto unit_length = json.find("unit_length")) request.unit_length = unit_length->positive_number();
+    if (const auto scalars = json.find("scalars"))
+      request.scalars =
+          scalars->word({"as_stated", "stretched"}) == "stretched" ? ScalarChoice::stretched : ScalarChoice::as_stated;
+    if (const auto ignore = json.find("ignore_gradient_opacity"); ignore && ignore->boolean())
+      request.ignores_gradient_opacity = true;
+    if (const auto range = json.find("range")) {
+      const auto ends = range->numbers(2);
+      if (ends.size() != 2 || !(ends[0] < ends[1])) range->refuse_value("a pair of ascending numbers");
+      request.range = {{ends[0], ends[1]}};
+    }
+  }
+  if (context.opacity) request.opacity = *context.opacity;
+  return request;
+}
+
 }  // namespace
 
-PiecewiseLinear read_transfer_function(const JsonReader& json, std::vector<std::string>& /*warnings*/) {
-  if (!json.is_string()) return read_points(json);
-  return json.blame_for([&] { return read_points(JsonReader::from_file(json.resolve(json.text()).string())); });
+bool is_of_another_program(const JsonReader& json) {
+  if (json.is_object()) return json.find("file").has_value() && !json.find("points");
+  return json.is_string() && json.blame_for([&] { return is_transfer_file(json.resolve(json.text())); });
+}
+
+TransferDocument read_transfer_function(const JsonReader& json, const TransferContext& context,
+                                        std::vector<std::string>& warnings) {
+  if (is_of_another_program(json)) {
+    const TransferFileRequest request = read_request(json, context);
+    FileTransfer read = json.blame_for([&] { return read_transfer_file(request, context.volume, warnings); });
+    return {std::move(read.transfer), std::move(read.description), true};
+  }
+  if (context.opacity)
+    json.refuse("points with an opacity of their own", "another program's file together with --opacity");
+  PiecewiseLinear transfer =
+      json.is_string()
+          ? json.blame_for([&] { return read_points(JsonReader::from_file(json.resolve(json.text()).string())); })
+          : read_points(json);
+  nlohmann::ordered_json description{{"points", transfer.points().size()}, {"color", "linear light"}};
+  if (transfer.is_linear_in_opacity()) description["opacity"] = "linear between points";
+  return {std::move(transfer), std::move(description)};
 }
 
 }  // namespace raytruth

@@ -6,7 +6,6 @@
 #include "raytruth/documents/field_document.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
 #include "raytruth/documents/scene_warnings.hpp"
-#include "raytruth/documents/transfer_files/transfer_file.hpp"
 #include "raytruth/reference/ray_integral.hpp"
 #include "raytruth/tables/table3.hpp"
 
@@ -58,52 +57,6 @@ Grid read_voxels(const JsonReader& json, const SceneOptions& options, SceneFile&
         "beside \"volume\" states it",
         place.place(), read.file));
   return std::move(read.grid);
-}
-
-FileTransfer read_file_transfer(const JsonReader& json, const SceneOptions& options, const Grid& grid,
-                                std::vector<std::string>& warnings) {
-  TransferFileRequest request{.ignores_gradient_opacity = options.ignores_gradient_opacity};
-  if (json.is_string()) {
-    request.file = json.resolve(json.text());
-  } else {
-    json.only({"file", "preset", "opacity", "range", "unit_length", "ignore_gradient_opacity"});
-    request.file = json.resolve(json.at("file").text());
-    if (const auto preset = json.find("preset")) request.preset = preset->text();
-    if (const auto opacity = json.find("opacity")) request.opacity = json.resolve(opacity->text());
-    if (const auto unit_length = json.find("unit_length")) request.unit_length = unit_length->positive_number();
-    if (const auto ignore = json.find("ignore_gradient_opacity"); ignore && ignore->boolean())
-      request.ignores_gradient_opacity = true;
-    if (const auto range = json.find("range")) {
-      const auto ends = range->numbers(2);
-      if (ends.size() != 2 || !(ends[0] < ends[1])) range->refuse_value("a pair of ascending numbers");
-      request.range = {{ends[0], ends[1]}};
-    }
-  }
-  if (options.opacity) request.opacity = *options.opacity;
-  return json.blame_for([&] { return read_transfer_file(request, grid, warnings); });
-}
-
-/// Whether a path names a file of this program's own: JSON with "points".
-bool is_own_file(const JsonReader& json) {
-  if (!json.is_string() || std::filesystem::path(json.text()).extension() != ".json") return false;
-  const auto document = json.blame_for([&] { return JsonReader::from_file(json.resolve(json.text()).string()); });
-  return document.is_object() && document.find("points");
-}
-
-PiecewiseLinear read_transfer(const JsonReader& json, const SceneOptions& options, SceneFile& result,
-                              const Grid& grid) {
-  const bool has_points = json.is_object() && json.find("points");
-  if (!has_points && (json.is_string() || json.is_object()) && !is_own_file(json)) {
-    FileTransfer read = read_file_transfer(json, options, grid, result.warnings);
-    result.transfer_function = std::move(read.description);
-    return std::move(read.transfer);
-  }
-  if (options.opacity)
-    json.refuse("points with an opacity of their own", "another program's file together with --opacity");
-  PiecewiseLinear transfer = read_transfer_function(json, result.warnings);
-  result.transfer_function = {{"points", transfer.points().size()}, {"color", "linear light"}};
-  if (transfer.is_linear_in_opacity()) result.transfer_function["opacity"] = "linear between points";
-  return transfer;
 }
 
 std::array<std::int64_t, 2> read_image_size(const JsonReader& json) {
@@ -262,10 +215,17 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   if (const auto empty = json.find("empty_space")) scene.empty_space = read_empty_space(*empty);
   scene.grid = read_voxels(json, options, result);
   const auto camera = json.find("camera");
-  const bool says_more_than_size = camera && !(camera->is_object() && camera->json().size() == 1 && camera->find("size"));
+  const bool says_more_than_size =
+      camera && !(camera->is_object() && camera->json().size() == 1 && camera->find("size"));
   scene.camera = says_more_than_size ? read_camera(*camera, scene.grid) : fit_camera(camera, result);
   const JsonReader transfer = json.at("transfer_function");
-  scene.transfer = read_transfer(transfer, options, result, scene.grid);
+  const TransferVolume volume = transfer_volume(scene.grid);
+  TransferDocument read = read_transfer_function(
+      transfer,
+      {.volume = &volume, .opacity = options.opacity, .ignores_gradient_opacity = options.ignores_gradient_opacity},
+      result.warnings);
+  scene.transfer = std::move(read.transfer);
+  result.transfer_function = std::move(read.description);
   if (scene.shading && scene.transfer.is_linear_in_opacity()) result.transfer_function["lit"] = sampled_opacity;
   // RayIntegral refuses numbers that it cannot calculate with.
   transfer.blame_for([&] { return RayIntegral(scene.transfer, scene.emission); });

@@ -112,11 +112,13 @@ bool is_slab_case(const JsonReader& json) { return json.is_object() && json.find
 SlabCase read_slab_case(const JsonReader& json, std::vector<std::string>& warnings) {
   json.only({"raytruth", "slab", "transfer_function", "emission", "lighting", "schemes"});
   check_form(json, "case/1");
+  TransferDocument read = read_transfer_function(json.at("transfer_function"), {}, warnings);
   SlabCase result{.slab = read_slab(json.at("slab")),
-                  .transfer = read_transfer_function(json.at("transfer_function"), warnings),
+                  .transfer = std::move(read.transfer),
                   .emission = read_emission(json),
                   .lighting = read_lighting(json.at("lighting")),
                   .schemes = read_schemes(json.at("schemes"), names_of(catalogue::shadings()))};
+  if (read.is_of_another_program) result.transfer_description = std::move(read.description);
   if (result.transfer.is_linear_in_opacity())
     warnings.push_back(fmt::format("warning: {}: {}", json.at("transfer_function").place(), sampled_opacity));
   // RayIntegral refuses numbers that no reference can enclose.
@@ -125,13 +127,15 @@ SlabCase read_slab_case(const JsonReader& json, std::vector<std::string>& warnin
 }
 
 Json evaluate(const SlabCase& asked) {
-  const auto& [slab, transfer, emission, lighting, names] = asked;
+  const auto& [slab, transfer, description, emission, lighting, names] = asked;
   const CertifiedRadiance truth = slab_reference(slab, transfer, emission, lighting);
   const SlabOptics optics(transfer, slab.front, slab.back, slab.length);
   Json schemes = Json::object();
   for (const std::string& name : names)
     if (name != "reference") schemes[name] = answer_of(*find_named(catalogue::shadings(), name), asked, optics, truth);
-  return {{"length", slab.length}, {"reference", reference_json(truth)}, {"schemes", std::move(schemes)}};
+  Json answer{{"length", slab.length}, {"reference", reference_json(truth)}, {"schemes", std::move(schemes)}};
+  if (!description.is_null()) answer["transfer_function"] = description;
+  return answer;
 }
 
 }  // namespace raytruth

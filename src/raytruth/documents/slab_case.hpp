@@ -6,7 +6,7 @@
 #include "raytruth/transfer/emission.hpp"
 #include "raytruth/transfer/piecewise_linear.hpp"
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include <string>
 #include <vector>
@@ -17,6 +17,8 @@ namespace raytruth {
 struct SlabCase {
   ShadedSlab slab;
   PiecewiseLinear transfer;
+  nlohmann::ordered_json transfer_description =
+      {};  ///< of another program's file; null: the points are of this program
   Emission emission = Emission::associated;
   Lighting lighting;
   std::vector<std::string> schemes;  ///< of catalogue::shadings(), or "reference"
@@ -25,7 +27,7 @@ struct SlabCase {
 /// Whether a case asks for a slab.
 bool is_slab_case(const JsonReader& json);
 
-/// Adds a line to `warnings` where an opacity is clamped. Throws InputError.
+/// Adds a line to `warnings` for what of a transfer function was mended or left out. Throws InputError.
 SlabCase read_slab_case(const JsonReader& json, std::vector<std::string>& warnings);
 
 /// What `eval` answers.

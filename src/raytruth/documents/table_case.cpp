@@ -29,7 +29,9 @@ constexpr std::uint64_t psi_places_judged = 4096;
 constexpr std::uint64_t seed = 1;  ///< of the places
 
 void read_slabs(const JsonReader& json, TableCase& asked, std::vector<std::string>& warnings) {
-  asked.transfer = read_transfer_function(json.at("transfer_function"), warnings);
+  TransferDocument read = read_transfer_function(json.at("transfer_function"), {}, warnings);
+  asked.transfer = std::move(read.transfer);
+  if (read.is_of_another_program) asked.transfer_description = std::move(read.description);
   if (const auto emission = json.find("emission"); emission && emission->word({"associated", "plain"}) == "plain")
     asked.emission = Emission::plain;
   json.at("transfer_function").blame_for([&] { return RayIntegral(*asked.transfer, asked.emission); });

@@ -24,13 +24,15 @@ struct PartialPreIntegration {};
 struct TableCase {
   std::variant<const TableBuilder*, SecondOrderMethod, PartialPreIntegration> builder;
   std::optional<PiecewiseLinear> transfer;  ///< none: partial pre-integration needs none
+  nlohmann::ordered_json transfer_description =
+      {};  ///< of another program's file; null: the points are of this program
   Emission emission = Emission::associated;
   TableAxes axes;
   TableFormat format;
   JsonReader json;
 };
 
-/// Adds a line to `warnings` where an opacity is clamped. Throws InputError.
+/// Adds a line to `warnings` for what of a transfer function was mended or left out. Throws InputError.
 TableCase read_table_case(const JsonReader& json, std::vector<std::string>& warnings);
 
 /// A table's numbers in C order, and what is known of it.

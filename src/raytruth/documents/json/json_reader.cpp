@@ -40,6 +40,40 @@ std::string suggestion(std::string_view closest) {
   return closest.empty() ? "" : fmt::format(" (perhaps {})", closest);
 }
 
+/// The text with spaces for what JSON does not allow and other programs write: a byte order mark, comments, and commas
+/// behind the last item. Nothing else moves, so messages name the right places.
+std::string without_lenience(std::string text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.replace(0, 3, 3, ' ');
+  std::size_t comma = std::string::npos;  // the last thing that was met, if it was one
+  const auto blank = [&text](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < std::min(end, text.size()); ++i)
+      if (text[i] != '\n') text[i] = ' ';
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') {
+      for (++i; i < text.size() && text[i] != '"'; ++i)
+        if (text[i] == '\\') ++i;
+      comma = std::string::npos;
+    } else if (text.compare(i, 2, "//") == 0) {
+      const std::size_t end = std::min(text.find('\n', i), text.size());
+      blank(i, end);
+      i = end - 1;
+    } else if (text.compare(i, 2, "/*") == 0) {
+      const std::size_t end = text.find("*/", i + 2);
+      if (end == std::string::npos) return text;
+      blank(i, end + 2);
+      i = end + 1;
+    } else if (c == ',') {
+      comma = i;
+    } else if (c != ' ' && c != '\t' && c != '\n' && c != '\r') {
+      if ((c == ']' || c == '}') && comma != std::string::npos) text[comma] = ' ';
+      comma = std::string::npos;
+    }
+  }
+  return text;
+}
+
 /// Builds a document from the parser's events, and refuses what nlohmann's own builder lets pass.
 class StrictBuilder {
  public:
@@ -142,6 +176,10 @@ JsonReader::JsonReader(Json document, std::string file_name)
 
 JsonReader JsonReader::from_file(const std::string& path) {
   return from_text(read_text(path, "a readable JSON file"), input_name(path));
+}
+
+JsonReader JsonReader::from_lenient_file(const std::string& path) {
+  return from_text(without_lenience(read_text(path, "a readable JSON file")), input_name(path));
 }
 
 JsonReader JsonReader::from_text(std::string_view text, std::string file_name) {

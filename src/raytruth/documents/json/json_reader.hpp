@@ -26,6 +26,9 @@ class JsonReader {
   /// Reads a document; "-" is standard input. Refuses what is not JSON (RFC 8259), byte order marks, duplicate keys,
   /// numbers beyond binary64, nesting deeper than 64, objects of more than 1000 members and files beyond 1 GiB.
   static JsonReader from_file(const std::string& path);
+  /// Reads JSON as other programs write it: a byte order mark, comments and commas behind the last item are passed
+  /// over, as they do.
+  static JsonReader from_lenient_file(const std::string& path);
   static JsonReader from_text(std::string_view text, std::string file_name);
   /// A document made from that of `origin`, whose file name messages keep.
   static JsonReader from_json(nlohmann::ordered_json document, const JsonReader& origin);

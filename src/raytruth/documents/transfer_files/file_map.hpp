@@ -2,80 +2,68 @@
 
 #include "raytruth/core/error.hpp"
 #include "raytruth/core/one_line.hpp"
+#include "raytruth/documents/json/json_reader.hpp"
 #include "raytruth/documents/transfer_files/transfer_file.hpp"
 #include "raytruth/transfer/color_map.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <array>
+#include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace raytruth {
 
 /// What a file's opacities are those of.
-enum class OpacityUnit { spacing, side_200, side_150 };
+enum class OpacityUnit { world, side_200, side_150 };
 
-/// A transfer function of a file, before anything is known of the grid.
+/// What a file says of its scalars: they are the data's own; they are stretched over the data; or nothing.
+enum class FileScalars { absolute, relative, unstated };
+
+/// A transfer function of a file, before anything is known of the volume.
 struct FileMap {
   std::string format;
   std::string name = {};
   ColorMap map = {};
-  OpacityUnit unit = OpacityUnit::spacing;
-  std::optional<std::array<double, 2>> own_range =
-      {};  ///< of scalars that stands for the data's; none: they are the data's
+  OpacityUnit unit = OpacityUnit::world;
+  double unit_distance = 1;  ///< world units, where `unit` is these
+  FileScalars scalars = FileScalars::absolute;
+  std::optional<std::array<double, 2>> own_range = {};  ///< that is stretched; none: from the first point to the last
   bool has_gradient_opacity = false;
+  nlohmann::ordered_json lighting = {};   ///< that the file asks for; null: none
+  std::vector<std::string> ignored = {};  ///< what else it says that changes nothing here
 };
 
-/// How the files of a program are read: a row of `transfer_file_formats()`.
-struct TransferFileFormat {
-  std::string_view extension;
-  FileMap (*read)(const TransferFileRequest&);
+/// A transfer function that a file holds, under its name.
+struct NamedMap {
+  std::string name;
+  std::function<FileMap()> read;
 };
 
-/// Every format, by its extension (transfer_file.cpp names them).
-std::span<const TransferFileFormat> transfer_file_formats();
+// The readers: all maps of a file. Each throws InputError with the file and the place in it, here or when a map is
+// read.
 
-// The readers. Each throws InputError with the file and the place in it.
-
-FileMap read_vtk_preset(const TransferFileRequest& request);      ///< JSON of ParaView, VolView, ParaView Glance
-FileMap read_slicer_text(const TransferFileRequest& request);     ///< 3D Slicer's .vp
-FileMap read_slicer_presets(const TransferFileRequest& request);  ///< 3D Slicer's .xml and .mrml
-FileMap read_voreen(const TransferFileRequest& request);          ///< .tfi
-FileMap read_inviwo(const TransferFileRequest& request);          ///< .itf
+std::vector<NamedMap> read_json_maps(const std::filesystem::path& file);    ///< .json, by what is in it
+std::vector<NamedMap> read_xml_maps(const std::filesystem::path& file);     ///< .xml, by what is in it
+std::vector<NamedMap> read_slicer_xml(const std::filesystem::path& file);   ///< .mrml
+std::vector<NamedMap> read_slicer_text(const std::filesystem::path& file);  ///< .vp
+std::vector<NamedMap> read_slicer_json(const JsonReader& document);         ///< .vp.json
+std::vector<NamedMap> read_vtk_json(const JsonReader& document);            ///< ParaView, VolView, ParaView Glance
+std::vector<NamedMap> read_vtk_xml(const std::filesystem::path& file);      ///< ParaView
+std::vector<NamedMap> read_voreen(const std::filesystem::path& file);       ///< .tfi
+std::vector<NamedMap> read_inviwo(const std::filesystem::path& file);       ///< .itf
 
 // --- What they share ---
 
 [[noreturn]] inline void refuse(std::string_view place, std::string_view found, std::string_view allowed) {
   throw InputError(one_line(fmt::format("{}: found {}; {} is allowed", place, found, allowed)));
-}
-
-/// Takes the one of this name; of a single one, none need be named.
-template <class Map, class NameOf>
-const Map& chosen(const std::vector<Map>& maps, const TransferFileRequest& request, const NameOf& name_of) {
-  const std::string file = request.file.string();
-  if (maps.empty()) refuse(file, "no transfer function", "one or more");
-  std::vector<std::string> names;
-  for (const Map& map : maps) names.push_back(name_of(map));
-  if (!request.preset) {
-    if (maps.size() == 1) return maps.front();
-    refuse(file, fmt::format("{} transfer functions and no preset named", maps.size()),
-           fmt::format("\"preset\" with one of their names ({}, ...)", shortened(names.front())));
-  }
-  const auto found = std::find(names.begin(), names.end(), *request.preset);
-  if (found == names.end()) {
-    const auto closest = closest_word(*request.preset, std::vector<std::string_view>(names.begin(), names.end()));
-    refuse(file,
-           fmt::format("no preset {}{}", shortened(*request.preset),
-                       closest.empty() ? "" : fmt::format(" (perhaps {})", closest)),
-           fmt::format("one of {}", shortened(fmt::format("{}", fmt::join(names, ", ")), 200)));
-  }
-  return maps[static_cast<std::size_t>(found - names.begin())];
 }
 
 /// Numbers in groups: the first of each group is the scalar.

@@ -2,13 +2,14 @@
 
 namespace raytruth {
 
+namespace {
+
 /// Voreen: intensities in `domain`, 8-bit colours; where a key is split, `colorL` counts below it, `colorR` from it on.
-FileMap read_voreen(const TransferFileRequest& request) {
-  const auto& file = request.file;
-  const pugi::xml_document document = read_xml(file);
-  const auto nodes = nodes_named(document, "TransFuncIntensity");
-  const pugi::xml_node& node = chosen(nodes, request, [](const pugi::xml_node&) { return std::string(); });
-  FileMap result{.format = "Voreen transfer function", .unit = OpacityUnit::side_200, .own_range = {{0, 1}}};
+FileMap read_intensities(const XmlFile& file, const pugi::xml_node& node) {
+  FileMap result{.format = "Voreen transfer function",
+                 .unit = OpacityUnit::side_200,
+                 .scalars = FileScalars::relative,
+                 .own_range = {{0, 1}}};
 
   // What changes the keys in other ways must not be there.
   const auto only = [&](const char* name, const char* which, double allowed) {
@@ -30,7 +31,7 @@ FileMap read_voreen(const TransferFileRequest& request) {
     high = attribute(file, domain, "y");
     if (!(low < high)) refuse(place_of(file, domain), fmt::format("{} to {}", low, high), "an ascending pair");
     // Beyond 0 to 1 it is no share of the data's range: these are the data's own scalars.
-    if (low < 0 || high > 1) result.own_range.reset();
+    if (low < 0 || high > 1) result.scalars = FileScalars::absolute;
   }
   const auto add = [&](double s, const pugi::xml_node& color) {
     constexpr double most = 255;
@@ -48,12 +49,11 @@ FileMap read_voreen(const TransferFileRequest& request) {
   return result;
 }
 
-FileMap read_inviwo(const TransferFileRequest& request) {
-  const auto& file = request.file;
-  const pugi::xml_document document = read_xml(file);
-  const auto nodes = nodes_named(document, "Points");
-  const pugi::xml_node& points = chosen(nodes, request, [](const pugi::xml_node&) { return std::string(); });
-  FileMap result{.format = "Inviwo transfer function", .unit = OpacityUnit::side_150, .own_range = {{0, 1}}};
+FileMap read_points(const XmlFile& file, const pugi::xml_node& points) {
+  FileMap result{.format = "Inviwo transfer function",
+                 .unit = OpacityUnit::side_150,
+                 .scalars = FileScalars::relative,
+                 .own_range = {{0, 1}}};
   for (const auto& [name, allowed] : {std::pair{"maskMin", 0.0}, {"maskMax", 1.0}, {"type", 0.0}}) {
     const pugi::xml_node child = points.parent().child(name);
     if (child && attribute(file, child, "content") != allowed)
@@ -67,6 +67,16 @@ FileMap read_inviwo(const TransferFileRequest& request) {
     result.map.opacities.push_back({s, attribute(file, color, "w")});
   }
   return result;
+}
+
+}  // namespace
+
+std::vector<NamedMap> read_voreen(const std::filesystem::path& file) {
+  return maps_of(read_xml(file), "TransFuncIntensity", read_intensities);
+}
+
+std::vector<NamedMap> read_inviwo(const std::filesystem::path& file) {
+  return maps_of(read_xml(file), "Points", read_points);
 }
 
 }  // namespace raytruth
