@@ -248,12 +248,14 @@ std::string read_scheme(const JsonReader& json) {
 
 SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   check_form(json, "scene/1");
-  json.only({"raytruth", "volume", "repair", "nan", "time_step", "spacing", "reconstruction", "transfer_function",
-             "emission", "camera", "scheme", "step", "shading", "table", "early_termination", "empty_space"});
+  json.only({"raytruth", "volume", "repair", "nan", "time_step", "spacing", "border", "reconstruction",
+             "transfer_function", "emission", "camera", "scheme", "step", "shading", "table", "early_termination",
+             "empty_space"});
   const std::string scheme = read_scheme(json.at("scheme"));
   SceneFile result{.scene = {.transfer = PiecewiseLinear(std::vector<TransferPoint>(1)), .scheme = scheme}};
   Scene& scene = result.scene;
   if (const auto kind = json.find("reconstruction")) scene.field = read_word<FieldKind>(*kind, field_kind_names);
+  scene.border = read_border(json);
   scene.emission = read_emission(json);
   if (const auto step = json.find("step")) scene.step = step->positive_number();
   if (const auto table = json.find("table")) scene.table = read_table(*table, scheme);
@@ -262,7 +264,8 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   if (const auto empty = json.find("empty_space")) scene.empty_space = read_empty_space(*empty);
   scene.grid = read_voxels(json, options, result);
   const auto camera = json.find("camera");
-  const bool says_more_than_size = camera && !(camera->is_object() && camera->json().size() == 1 && camera->find("size"));
+  const bool says_more_than_size =
+      camera && !(camera->is_object() && camera->json().size() == 1 && camera->find("size"));
   scene.camera = says_more_than_size ? read_camera(*camera, scene.grid) : fit_camera(camera, result);
   const JsonReader transfer = json.at("transfer_function");
   scene.transfer = read_transfer(transfer, options, result, scene.grid);
