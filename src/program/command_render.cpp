@@ -87,11 +87,10 @@ int render_scene(const RenderOptions& options) {
   for (const std::string& warning : scene.warnings) say(warning);
   const auto size = scene.scene.camera.size;
   scene.scene.covers_camera = true;
-  nlohmann::ordered_json result{{"image", file.filename().string()},
-                                {"size", size},
-                                {"scheme", scene.scene.scheme},
-                                {"volume", std::move(scene.volume)},
-                                {"transfer_function", std::move(scene.transfer_function)}};
+  nlohmann::ordered_json result{
+      {"image", file.filename().string()},     {"size", size},
+      {"scheme", scene.scene.scheme},          {"volume", std::move(scene.volume)},
+      {"border", name_of(scene.scene.border)}, {"transfer_function", std::move(scene.transfer_function)}};
   if (!scene.fitted_camera.is_null()) result["fitted_camera"] = scene.fitted_camera;
   if (!scene.warnings.empty()) result["warnings"] = scene.warnings;
   const Rendering rendering = json.at("scheme").blame_for([&] { return render(Renderer(std::move(scene.scene))); });
@@ -124,7 +123,7 @@ std::function<int()> describe(CommandOptions& add) {
 extern const Command render_command;
 const Command render_command{
     .name = "render",
-    .summary = "Render a scene, by any scheme or certified",
+    .summary = "Render a scene: by any scheme, or the true image, certified without light and estimated with it",
     .example = "raytruth render scene.json -o image.png",
     .notes =
         "With the scheme \"reference\" an image of radii is written beside it. Without light it is "

@@ -1,16 +1,23 @@
 #include "experiments/output.hpp"
 #include "program/command.hpp"
 #include "raytruth/core/one_line.hpp"
+#include "raytruth/documents/case_json.hpp"
+#include "raytruth/documents/conformance/vectors.hpp"
 #include "raytruth/documents/conformance/vectors_score.hpp"
 #include "raytruth/documents/json/input.hpp"
 #include "raytruth/documents/json/json_reader.hpp"
 #include "raytruth/reference/certified.hpp"
 
 #include <fmt/format.h>
+#include <boost/algorithm/string/trim.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
 #include <set>
+#include <span>
 
 namespace raytruth {
 
@@ -19,6 +26,8 @@ namespace {
 struct ScoreOptions {
   std::string vectors;
   std::string answers;
+  std::optional<std::string> emission;  ///< only vectors of this convention; none: all
+  bool per_vector = false;
   bool json = false;
 };
 
@@ -35,17 +44,28 @@ Certified read_truth(const JsonReader& json) {
 /// What a score needs of the vectors: their answers are still to come.
 std::vector<ScoredVector> read_vectors(const std::string& path) {
   const JsonReader document = JsonReader::from_file(path);
-  document.at("raytruth").word({"vectors/1"});
+  document.at("raytruth").word({vector_form_names.begin(), vector_form_names.end()});
   document.only({"raytruth", "seed", "levels", "vectors"});
   std::vector<ScoredVector> vectors;
   std::set<std::string> ids;
   for (const JsonReader& vector : document.at("vectors").items()) {
-    vector.only({"id", "level", "emission", "signal", "slab", "transfer_function", "reference"});
-    vectors.push_back(
-        {vector.at("id").text(), vector.at("level").text(), read_truth(vector.at("reference")), std::nullopt});
+    vector.only({"id", "level", "emission", "signal", "slab", "transfer_function", "separate_lists", "reference"});
+    vectors.push_back({vector.at("id").text(), vector.at("level").text(), read_truth(vector.at("reference")),
+                       std::nullopt, read_emission(vector)});
     if (!ids.insert(vectors.back().id).second) vector.at("id").refuse_value("each id once");
   }
   return vectors;
+}
+
+std::string_view name_of(Emission emission) { return emission == Emission::associated ? "associated" : "plain"; }
+
+/// Leaves the vectors that are asked for.
+void select(std::vector<ScoredVector>& vectors, const ScoreOptions& options) {
+  if (!options.emission) return;
+  std::erase_if(vectors, [&](const ScoredVector& vector) { return name_of(vector.emission) != *options.emission; });
+  if (vectors.empty())
+    throw InputError(fmt::format("--emission: {} has no vectors whose emission is {}", input_name(options.vectors),
+                                 *options.emission));
 }
 
 /// Gives the vectors their answers.
@@ -53,56 +73,147 @@ void take_answers(std::vector<ScoredVector>& vectors, const ScoreOptions& option
   std::vector<std::string> warnings;
   auto answers = read_answers(options.answers, warnings);
   for (const std::string& warning : warnings) say(warning);
-  std::vector<std::string> missing;
-  for (ScoredVector& vector : vectors) {
-    const auto answer = answers.extract(vector.id);
-    if (answer)
-      vector.answer = answer.mapped();
-    else
-      missing.push_back(vector.id);
-  }
-  const std::string name = input_name(options.answers);
-  if (!answers.empty()) {
-    std::vector<std::string> ids;
-    for (const ScoredVector& vector : vectors) ids.push_back(vector.id);
-    const std::string& unknown = answers.begin()->first;
-    const auto closest = closest_word(unknown, ids);
-    throw InputError(fmt::format("{}: found the id '{}'{}; ids of {} are allowed", name, shortened(unknown),
-                                 closest.empty() ? "" : fmt::format(" (perhaps {})", closest),
-                                 input_name(options.vectors)));
-  }
-  if (!missing.empty())
-    say(fmt::format("{}: no answer for {} of {} vectors, which count as no digits; the first is {}", name,
-                    missing.size(), vectors.size(), missing.front()));
+  for (ScoredVector& vector : vectors)
+    if (const auto answer = answers.extract(vector.id)) vector.answer = answer.mapped();
+  if (answers.empty()) return;
+  std::vector<std::string> ids;
+  for (const ScoredVector& vector : vectors) ids.push_back(vector.id);
+  const std::string& unknown = answers.begin()->first;
+  const auto closest = closest_word(unknown, ids);
+  throw InputError(fmt::format("{}: found the id '{}'{}; ids of {} are allowed", input_name(options.answers),
+                               shortened(unknown), closest.empty() ? "" : fmt::format(" (perhaps {})", closest),
+                               input_name(options.vectors)));
 }
 
-Json scores_json(const std::vector<LevelScore>& scores) {
+void tell_missing(const std::vector<ScoredVector>& vectors, const ScoreOptions& options) {
+  const auto is_missing = [](const ScoredVector& vector) { return !vector.answer; };
+  const auto count = std::count_if(vectors.begin(), vectors.end(), is_missing);
+  if (count == 0) return;
+  say(fmt::format("{}: no answer for {} of {} vectors, which are left out of the digits; the first is {}",
+                  input_name(options.answers), count, vectors.size(),
+                  std::find_if(vectors.begin(), vectors.end(), is_missing)->id));
+}
+
+/// A number, or null where there is none: no answer, or one that is not finite.
+Json number_json(std::optional<double> x) { return x && std::isfinite(*x) ? Json(*x) : Json(); }
+
+Json levels_json(const std::vector<LevelScore>& scores) {
   Json list = Json::array();
   for (const LevelScore& score : scores)
     list.push_back({{"level", score.level},
                     {"cases", score.cases},
                     {"answered", score.answered},
-                    {"digits_min", score.digits_min},
-                    {"digits_median", score.digits_median},
-                    {"worst", score.worst}});
+                    {"digits_min", number_json(score.digits_min)},
+                    {"digits_median", number_json(score.digits_median)},
+                    {"worst", score.worst ? Json(*score.worst) : Json()},
+                    {"not_finite", score.not_finite},
+                    {"color_digits_min", number_json(score.color.digits_min)},
+                    {"color_digits_median", number_json(score.color.digits_median)},
+                    {"color_error_max", number_json(score.color.error_max)},
+                    {"opacity_digits_min", number_json(score.opacity.digits_min)},
+                    {"opacity_digits_median", number_json(score.opacity.digits_median)},
+                    {"opacity_error_max", number_json(score.opacity.error_max)}});
   return list;
 }
 
-std::string scores_text(const std::vector<LevelScore>& scores) {
-  std::size_t width = 0;
-  for (const LevelScore& score : scores) width = std::max(width, score.level.size());
-  std::string text = fmt::format("{:<{}}  cases  answered  digits: least  median  worst case\n", "level", width);
-  for (const LevelScore& score : scores)
-    text += fmt::format("{:<{}}  {:5}  {:8}  {:13.2f}  {:6.2f}  {}\n", score.level, width, score.cases, score.answered,
-                        score.digits_min, score.digits_median, score.worst);
+Json scored_json(const std::vector<ScoredVector>& vectors) {
+  Json list = Json::array();
+  for (const ScoredVector& vector : vectors) {
+    std::optional<AnswerScore> score;
+    if (vector.answer) score = score_of(*vector.answer, vector.truth);
+    const auto number = [&score](auto member) { return score ? number_json(std::invoke(member, *score)) : Json(); };
+    list.push_back({{"id", vector.id},
+                    {"level", vector.level},
+                    {"emission", name_of(vector.emission)},
+                    {"answered", vector.answer.has_value()},
+                    {"digits", number(&AnswerScore::digits)},
+                    {"color_digits", number(&AnswerScore::color_digits)},
+                    {"color_error", number(&AnswerScore::color_error)},
+                    {"opacity_digits", number(&AnswerScore::opacity_digits)},
+                    {"opacity_error", number(&AnswerScore::opacity_error)},
+                    {"error_bound", vector.truth.radius}});
+  }
+  return list;
+}
+
+/// A column of a table: one of the members of its lines.
+struct Column {
+  std::string_view key;
+  std::string_view head;
+  enum class Kind { word, count, digits, error } kind;
+};
+
+constexpr std::array level_columns{
+    Column{"level", "level", Column::Kind::word},
+    Column{"cases", "cases", Column::Kind::count},
+    Column{"answered", "answered", Column::Kind::count},
+    Column{"digits_min", "digits: least", Column::Kind::digits},
+    Column{"digits_median", "median", Column::Kind::digits},
+    Column{"color_digits_min", "colour: digits", Column::Kind::digits},
+    Column{"color_error_max", "error", Column::Kind::error},
+    Column{"opacity_digits_min", "opacity: digits", Column::Kind::digits},
+    Column{"opacity_error_max", "error", Column::Kind::error},
+    Column{"worst", "worst case", Column::Kind::word},
+};
+
+constexpr std::array vector_columns{
+    Column{"id", "id", Column::Kind::word},
+    Column{"emission", "emission", Column::Kind::word},
+    Column{"digits", "digits", Column::Kind::digits},
+    Column{"color_digits", "colour: digits", Column::Kind::digits},
+    Column{"color_error", "error", Column::Kind::error},
+    Column{"opacity_digits", "opacity: digits", Column::Kind::digits},
+    Column{"opacity_error", "error", Column::Kind::error},
+};
+
+std::string cell_text(const Column& column, const Json& value) {
+  if (value.is_null()) return "-";
+  switch (column.kind) {
+    case Column::Kind::word:
+      return value.get<std::string>();
+    case Column::Kind::count:
+      return fmt::format("{}", value.get<std::int64_t>());
+    case Column::Kind::digits:
+      return fmt::format("{:.2f}", value.get<double>());
+    case Column::Kind::error:
+      break;
+  }
+  return fmt::format("{:.1e}", value.get<double>());
+}
+
+/// The lines as a table: words to the left, numbers to the right.
+std::string table_text(std::span<const Column> columns, const Json& lines) {
+  std::vector<std::vector<std::string>> table{{}};
+  for (const Column& column : columns) table.front().emplace_back(column.head);
+  for (const Json& line : lines) {
+    auto& cells = table.emplace_back();
+    for (const Column& column : columns) cells.push_back(cell_text(column, line.at(column.key)));
+  }
+  std::vector<std::size_t> widths(columns.size());
+  for (const auto& cells : table)
+    for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], cells[i].size());
+  std::string text;
+  for (const auto& cells : table) {
+    std::string row;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const bool is_word = columns[i].kind == Column::Kind::word;
+      row += i == 0 ? "" : "  ";
+      row += is_word ? fmt::format("{:<{}}", cells[i], widths[i]) : fmt::format("{:>{}}", cells[i], widths[i]);
+    }
+    text += boost::trim_right_copy(row) + "\n";
+  }
   return text;
 }
 
 int score_answers(const ScoreOptions& options) {
   std::vector<ScoredVector> vectors = read_vectors(options.vectors);
   take_answers(vectors, options);
-  const auto scores = score(vectors);
-  print(options.json ? scores_json(scores).dump(2) + "\n" : scores_text(scores));
+  select(vectors, options);
+  tell_missing(vectors, options);
+  const Json lines = options.per_vector ? scored_json(vectors) : levels_json(score(vectors));
+  const std::span<const Column> columns =
+      options.per_vector ? std::span<const Column>(vector_columns) : std::span<const Column>(level_columns);
+  print(options.json ? lines.dump(2) + "\n" : table_text(columns, lines));
   return 0;
 }
 
@@ -110,6 +221,9 @@ std::function<int()> describe(CommandOptions& add) {
   const auto options = std::make_shared<ScoreOptions>();
   add.operand("vectors", options->vectors, "JSON file, written by `raytruth vectors`");
   add.operand("answers", options->answers, "CSV file with the header id,r,g,b,opacity; '-' is standard input");
+  add.word("--emission", options->emission, {"associated", "plain"},
+           "Score the vectors of this convention only (default: all)");
+  add.flag("--per-vector", options->per_vector, "A line for each vector, not for each level");
   add.flag("--json", options->json, "As JSON");
   return [options] { return score_answers(*options); };
 }
@@ -122,12 +236,17 @@ const Command score_command{
     .summary = "Count the digits that are right in a program's answers to the vectors",
     .example = "raytruth score vectors.json answers.csv",
     .notes =
-        "Digits of an answer: -log10(error / scale), of colour and opacity the lesser one. The colour's\n"
-        "error is that of its worst channel, its scale the largest channel of the certified colour; the\n"
-        "opacity's scale is the certified opacity. Errors below the certified error_bound, or 2^-53 of the\n"
-        "scale, count as that much; errors above the scale have no digits, nor has a vector without an\n"
-        "answer, or whose answer is not finite. Ids that are not in the vectors are refused. Semicolons between\n"
-        "fields, and decimal commas with them, are read as spreadsheets write them.",
+        "Digits of an answer: -log10(error / scale), of colour and opacity the lesser one; both stand by\n"
+        "themselves beside it, with their absolute errors. The colour's error is that of its worst channel,\n"
+        "its scale the largest channel of the certified colour; the opacity's scale is the certified\n"
+        "opacity. Errors below the certified error_bound, or 2^-53 of the scale, count as that much; errors\n"
+        "above the scale have no digits, nor has an answer that is not finite.\n"
+        "\n"
+        "A level is counted over what was answered: vectors without an answer are left out of its digits,\n"
+        "and how many were answered stands beside them. A program that knows one convention of emission\n"
+        "says which: --emission associated, or plain. Ids that are not in the vectors are refused.\n"
+        "Vectors of the forms vectors/1 and vectors/2 are read; semicolons between fields, and decimal\n"
+        "commas with them, are read as spreadsheets write them.",
     .describe = describe};
 
 }  // namespace raytruth

@@ -2,6 +2,7 @@
 
 Pieces are split where the scalar turns or meets a point of the transfer function. In between extinction and colour are
 polynomials, so the optical depth is one too; what remains is Gauss-Legendre quadrature, refined until it stands still.
+Where the opacity is linear, not the extinction, so is the scalar, and the depth has a closed form with a logarithm.
 """
 
 import decimal
@@ -91,8 +92,9 @@ RULE = legendre(NODES)
 
 
 def lines(points):
-    """The transfer function as (low, high, point, slope) of its linear pieces, channel by channel (tau, r, g, b)."""
-    table = [(Decimal(point["s"]), [Decimal(x) for x in (point["extinction"], *point["color"])]) for point in points]
+    """The transfer function as (low, high, point, slope) of its linear pieces, channel by channel (tau or a, r, g, b)."""
+    density = "opacity" if "opacity" in points[0] else "extinction"
+    table = [(Decimal(point["s"]), [Decimal(x) for x in (point[density], *point["color"])]) for point in points]
     zero = [Decimal(0)] * 4
     yield Decimal("-Infinity"), table[0][0], table[0], zero
     for (s, here), (s_next, following) in zip(table, table[1:]):
@@ -102,7 +104,7 @@ def lines(points):
 
 
 def optics(points, scalar, at):
-    """Extinction and colour as polynomials, around a place where the scalar has the value `at`."""
+    """Extinction, or opacity, and colour as polynomials, around a place where the scalar has the value `at`."""
     for low, high, (s, values), slopes in lines(points):
         if low <= at < high:
             return [[y + slope * ((scalar[0] - s) if slope else 0), *(slope * x for x in scalar[1:])] for y, slope in zip(values, slopes)]
@@ -110,18 +112,18 @@ def optics(points, scalar, at):
 
 
 def emitted(sources, depth, begin, end):
-    """Integrals of sources times exp(-depth), by halves until they add up to the whole."""
+    """Integrals of sources times exp(-depth(u)), by halves until they add up to the whole."""
 
     def quadrature(low, high):
         sums = [Decimal(0)] * len(sources)
         for node, weight in RULE:
             u = low + node * (high - low)
-            light = weight * (high - low) * (-value(depth, u)).exp()
+            light = weight * (high - low) * (-depth(u)).exp()
             sums = [total + light * value(source, u) for total, source in zip(sums, sources)]
         return sums
 
     def refined(low, high, whole):
-        if value(depth, low) > DARK:
+        if depth(low) > DARK:
             return [Decimal(0)] * len(sources)
         middle = (low + high) / 2
         halves = quadrature(low, middle), quadrature(middle, high)
@@ -144,9 +146,39 @@ def pieces_of(vector):
         yield Decimal(end) - Decimal(begin), [Decimal(x) for x in coefficients]
 
 
+def depth_of_extinction(extinction, begin):
+    """The optical depth from `begin` to u."""
+    depth = antiderivative(extinction)
+    depth[0] -= value(depth, begin)
+    return lambda u: value(depth, u)
+
+
+def depth_of_opacity(opacity, unit_length, begin):
+    """The integral of -ln(1 - a) / unit_length from `begin` to u, with a linear in u."""
+    constant, slope = opacity
+
+    def antiderivative_of_log(clear):
+        return clear * clear.ln() - clear if clear > 0 else Decimal(0)
+
+    clear = [1 - constant, -slope]
+    if slope == 0:
+        return lambda u: -clear[0].ln() * (u - begin) / unit_length
+    at_begin = antiderivative_of_log(value(clear, begin))
+    return lambda u: -(antiderivative_of_log(value(clear, u)) - at_begin) / (clear[1] * unit_length)
+
+
+def emitted_by_depth(channels, depth, begin, end):
+    """Integrals of channels times d(1 - exp(-depth)), by parts: the extinction itself may be infinite at an end."""
+    light = emitted([derivative(channel) for channel in channels], depth, begin, end)
+    front, back = (-depth(begin)).exp(), (-depth(end)).exp()
+    return [value(channel, begin) * front - value(channel, end) * back + inside for channel, inside in zip(channels, light)]
+
+
 def integrate(vector):
     """Colour, three channels, and opacity."""
     points = vector["transfer_function"]["points"]
+    unit_length = vector["transfer_function"].get("unit_length")
+    is_plain = vector["emission"] == "plain"
     color = [Decimal(0)] * 3
     depth_before = Decimal(0)
     for length, scalar in pieces_of(vector):
@@ -158,10 +190,18 @@ def integrate(vector):
         for begin, end in zip(splits, splits[1:]):
             if end - begin < Decimal("1e-50"):
                 continue
-            tau, *channels = optics(points, scalar, value(scalar, (begin + end) / 2))
-            depth = antiderivative(tau)
-            depth[0] += depth_before - value(depth, begin)
-            depth_before = value(depth, end)
-            sources = channels if vector["emission"] == "plain" else [product(tau, channel) for channel in channels]
-            color = [x + y for x, y in zip(color, emitted(sources, depth, begin, end))]
+            density, *channels = optics(points, scalar, value(scalar, (begin + end) / 2))
+            front = (-depth_before).exp()
+            if unit_length is None:
+                depth = depth_of_extinction(density, begin)
+                sources = channels if is_plain else [product(density, channel) for channel in channels]
+                light = emitted(sources, depth, begin, end)
+            elif density == [1, 0]:
+                light = [Decimal(0) if is_plain else value(channel, begin) for channel in channels]
+                return [x + front * y for x, y in zip(color, light)], Decimal(1)
+            else:
+                depth = depth_of_opacity(density, Decimal(unit_length), begin)
+                light = (emitted if is_plain else emitted_by_depth)(channels, depth, begin, end)
+            color = [x + front * y for x, y in zip(color, light)]
+            depth_before += depth(end)
     return color, 1 - (-depth_before).exp()

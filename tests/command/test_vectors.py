@@ -1,8 +1,10 @@
 """`raytruth vectors` and `raytruth score`: the conformance vectors, and what answers to them are worth."""
 
+import bisect
 import json
 import math
 import unittest
+from fractions import Fraction
 
 import jsonschema
 
@@ -15,6 +17,17 @@ COMMITTED = SOURCE / "results/vectors.json"
 
 def csv(answers):
     return "id,r,g,b,opacity\n" + "".join(f"{name},{','.join(map(repr, numbers))}\n" for name, numbers in answers.items())
+
+
+def in_list(points, name, channel, s, is_below):
+    """What a list of points is at s, exactly; `is_below`: from below."""
+    numbers = [Fraction(point[name][channel] if name == "color" else point[name]) for point in points]
+    places = [Fraction(point["s"]) for point in points]
+    following = (bisect.bisect_left if is_below else bisect.bisect_right)(places, s)
+    if following in (0, len(places)):
+        return numbers[min(following, len(places) - 1)]
+    weight = (Fraction(s) - places[following - 1]) / (places[following] - places[following - 1])
+    return numbers[following - 1] + weight * (numbers[following] - numbers[following - 1])
 
 
 def truths(vectors):
@@ -42,7 +55,56 @@ class Vectors(ProgramTest):
         for level in levels:
             count = sum(vector["level"] == level for vector in self.committed["vectors"])
             self.assertTrue(10 <= count <= 20, (level, count))
-        self.assertLess(COMMITTED.stat().st_size, 200_000)
+        self.assertLess(COMMITTED.stat().st_size, 300_000)
+
+    def test_separate_lists_are_the_transfer_function(self):
+        """At every point of either list, from below and from above, in exact fractions."""
+        count = 0
+        for vector in self.committed["vectors"]:
+            self.assertEqual("separate_lists" in vector, vector["level"] == "separate_lists")
+            if "separate_lists" not in vector:
+                continue
+            count += 1
+            lists, joined = vector["separate_lists"], vector["transfer_function"]
+            self.assertEqual(lists.get("unit_length"), joined.get("unit_length"))
+            density = "opacity" if "opacity" in lists else "extinction"
+            scalars = {point["s"] for name in ("color", density) for point in lists[name]}
+            self.assertEqual({point["s"] for point in joined["points"]}, scalars)
+            for name, channels in ((density, 1), ("color", 3)):
+                for s in scalars:
+                    for is_below in (False, True):
+                        for channel in range(channels):
+                            self.assertEqual(
+                                in_list(lists[name], name, channel, s, is_below), in_list(joined["points"], name, channel, s, is_below)
+                            )
+        self.assertEqual(count, 16)
+
+    def test_points_that_a_program_drops_are_seen(self):
+        """As by programs that look their opacities up at the points of the colours only, or the other way round."""
+        for vector in self.committed["vectors"]:
+            if "separate_lists" not in vector or "signal" not in vector:
+                continue
+            reference = vector["reference"]
+            density = "opacity" if "opacity" in vector["separate_lists"] else "extinction"
+            for name, least in (("color", 1e-2), (density, 1e-4)):
+                kept = {point["s"] for point in vector["separate_lists"][name]}
+                points = [point for point in vector["transfer_function"]["points"] if point["s"] in kept]
+                color, opacity = exact_integral.integrate(changed(vector, "/transfer_function/points", points))
+                errors = [abs(float(x) - y) for x, y in zip([*color, opacity], [*reference["color"], reference["opacity"]])]
+                self.assertGreater(max(errors), least, (vector["id"], name))
+
+    def test_first_form_is_the_beginning(self):
+        """Those who read vectors/1 are asked what they were asked, bit by bit."""
+        first, second = self.output_of("vectors", "--form", "vectors/1"), self.output_of("vectors")
+        self.assertEqual(second, self.output_of("vectors", "--form", "vectors/2"))
+        lines = second.splitlines()
+        kept = [line for line in first.splitlines() if line.startswith("    {")]
+        self.assertEqual(len(kept), 9 + 140)
+        for line in kept:
+            self.assertTrue(line in lines or line + "," in lines, line[:80])
+        jsonschema.Draft202012Validator(SCHEMA).validate(json.loads(first))
+        self.assertEqual(json.loads(first)["raytruth"], "vectors/1")
+        self.assert_refused(self.run_program("vectors", "--form", "vectors/3"), "--form", "vectors/1", "vectors/2")
 
     def test_every_number_is_right_to_its_bound(self):
         """Against 60 decimal digits, computed in Python from what the schema says."""
@@ -131,13 +193,69 @@ class Scores(ProgramTest):
         self.answers["c"] = [1.01e-9, 0, 0, 0.125]
         scores = self.score(csv(self.answers))
         self.assertEqual(list(scores), ["smooth", "jump", "all"])
-        self.assertEqual(list(scores["smooth"]), ["level", "cases", "answered", "digits_min", "digits_median", "worst"])
+        self.assertEqual(list(scores["smooth"])[:6], ["level", "cases", "answered", "digits_min", "digits_median", "worst"])
         self.assertAlmostEqual(scores["smooth"]["digits_min"], 3)
         self.assertAlmostEqual(scores["smooth"]["digits_median"], 4)
         self.assertEqual((scores["smooth"]["worst"], scores["smooth"]["cases"]), ("a", 2))
         self.assertAlmostEqual(scores["jump"]["digits_min"], 2)
         self.assertEqual((scores["all"]["worst"], scores["all"]["cases"], scores["all"]["answered"]), ("c", 3, 3))
         self.assertAlmostEqual(scores["all"]["digits_median"], 3)
+
+    def test_color_and_opacity_apart_with_absolute_errors(self):
+        self.answers["a"] = [0.5, 0.25 + 0.5e-3, 0, 0.125]
+        self.answers["b"] = [0.5, 0.25, 0.5e-4, 0.125 - 0.125e-5]
+        smooth = self.score(csv(self.answers))["smooth"]
+        for key, right in (
+            ("color_digits_min", 3), ("color_digits_median", 3.5), ("color_error_max", 0.5e-3),
+            ("opacity_digits_min", 5), ("opacity_error_max", 0.125e-5),
+        ):
+            self.assertAlmostEqual(smooth[key], right, places=11, msg=key)
+        self.assertEqual(smooth["not_finite"], 0)
+
+    def test_one_convention(self):
+        """A renderer that knows one convention is scored on its vectors; other answers are passed over."""
+        document = changed(self.document, "/vectors/1/emission", "associated")
+        vectors = self.write("mixed.json", document)
+        self.answers["a"] = [0.5, 0.25 + 0.5e-3, 0, 0.125]
+        answers = self.write("answers.csv", csv(self.answers))
+        for emission, counts, worst in (("associated", {"smooth": 1, "all": 1}, "b"), ("plain", {"smooth": 1, "jump": 1, "all": 2}, "a")):
+            levels = self.json_of("score", vectors, answers, "--json", "--emission", emission)
+            self.assertEqual({level["level"]: level["cases"] for level in levels}, counts)
+            self.assertEqual(levels[-1]["worst"], worst)
+        only_b = self.write("answers.csv", csv({"b": self.answers["b"]}))
+        done = self.run_program("score", vectors, only_b, "--emission", "associated")
+        self.assertEqual((done.returncode, done.stderr), (0, b""))
+        self.assert_refused(self.run_program("score", self.vectors, only_b, "--emission", "associated"), "--emission", "vectors.json", "associated")
+        self.assert_refused(self.run_program("score", vectors, only_b, "--emission", "other"), "--emission", "associated", "plain")
+        self.assert_refused(
+            self.run_program("score", vectors, self.write("answers.csv", csv({"x": [0, 0, 0, 0]})), "--emission", "plain"), "the id 'x'"
+        )
+
+    def test_a_line_for_each_vector(self):
+        self.answers["a"] = [0.5, 0.25 + 0.5e-3, 0, 0.125]
+        self.answers["c"][0] = math.nan
+        del self.answers["b"]
+        answers = self.write("answers.csv", csv(self.answers))
+        a, b, c = self.json_of("score", self.vectors, answers, "--json", "--per-vector")
+        self.assertEqual([a["id"], a["level"], a["emission"], a["answered"]], ["a", "smooth", "plain", True])
+        self.assertAlmostEqual(a["color_digits"], 3)
+        self.assertAlmostEqual(a["color_error"], 0.5e-3)
+        self.assertEqual((a["digits"], a["opacity_error"], a["error_bound"]), (a["color_digits"], 0, 1e-13))
+        self.assertEqual((b["answered"], b["digits"], b["color_error"], b["opacity_digits"]), (False, None, None, None))
+        self.assertEqual((c["answered"], c["digits"], c["color_digits"], c["color_error"], c["opacity_error"]), (True, 0, 0, None, 0))
+        self.assertGreater(c["opacity_digits"], 10)
+        header, *lines = self.output_of("score", self.vectors, answers, "--per-vector").splitlines()
+        self.assertEqual(header.split(), ["id", "emission", "digits", "colour:", "digits", "error", "opacity:", "digits", "error"])
+        self.assertEqual(lines[0].split()[:5], ["a", "plain", "3.00", "3.00", "5.0e-04"])
+        self.assertEqual(lines[1].split(), ["b", "plain", *"-----"])
+        self.assertEqual(lines[2].split()[:5], ["c", "plain", "0.00", "0.00", "-"])
+
+    def test_second_form(self):
+        """The same members, and one more, which a score does not ask."""
+        answers = self.write("answers.csv", csv(self.answers))
+        before = self.json_of("score", self.vectors, answers, "--json")
+        second = changed(changed(self.document, "/raytruth", "vectors/2"), "/vectors/0/separate_lists", {"color": []})
+        self.assertEqual(self.json_of("score", self.write("second.json", second), answers, "--json"), before)
 
     def test_digits_end_at_the_bound_and_at_zero(self):
         scores = self.score(csv(self.answers))
@@ -149,9 +267,12 @@ class Scores(ProgramTest):
     def test_table(self):
         self.answers["a"] = [0.5, 0.25 + 0.5e-3, 0, 0.125]
         header, *lines = self.output_of("score", self.vectors, self.write("answers.csv", csv(self.answers))).splitlines()
-        self.assertEqual(header.split(), ["level", "cases", "answered", "digits:", "least", "median", "worst", "case"])
+        self.assertEqual(
+            header.split(),
+            ["level", "cases", "answered", "digits:", "least", "median", "colour:", "digits", "error", "opacity:", "digits", "error", "worst", "case"],
+        )
         self.assertEqual([line.split()[0] for line in lines], ["smooth", "jump", "all"])
-        self.assertEqual(lines[0].split()[1:4] + lines[0].split()[5:], ["2", "2", "3.00", "a"])
+        self.assertEqual(lines[0].split()[1:4] + lines[0].split()[5:7] + lines[0].split()[8:], ["2", "2", "3.00", "3.00", "5.0e-04", "0.0e+00", "a"])
 
     def test_answers_from_other_programs(self):
         """Quotes, Windows line ends, blank lines, blanks, any order, as spreadsheets and scripts write them."""
@@ -191,17 +312,24 @@ class Scores(ProgramTest):
                 self.assertEqual(jump, good["jump"])
         self.assertEqual(self.score(csv(self.answers).replace("1e-09", "1e-999"))["jump"]["digits_min"], 0)
 
-    def test_missing_answers_count_as_no_digits(self):
-        del self.answers["b"]
+    def test_levels_are_counted_over_what_was_answered(self):
+        del self.answers["b"], self.answers["c"]
         done = self.run_program("score", self.vectors, self.write("answers.csv", csv(self.answers)), "--json")
         self.assertEqual(done.returncode, 0)
-        self.assertIn(b"answers.csv: no answer for 1 of 3 vectors", done.stderr)
-        smooth = json.loads(done.stdout)[0]
-        self.assertEqual((smooth["cases"], smooth["answered"], smooth["digits_min"], smooth["worst"]), (2, 1, 0, "b"))
+        self.assertEqual(
+            done.stderr, b"raytruth: answers.csv: no answer for 2 of 3 vectors, which are left out of the digits; the first is b\n"
+        )
+        smooth, jump, every = json.loads(done.stdout)
+        self.assertEqual((smooth["cases"], smooth["answered"], smooth["worst"]), (2, 1, "a"))
+        self.assertGreater(smooth["digits_min"], 12)
+        self.assertEqual((jump["answered"], jump["digits_min"], jump["digits_median"], jump["worst"]), (0, None, None, None))
+        self.assertEqual((every["answered"], every["digits_min"]), (1, smooth["digits_min"]))
+        table = self.output_of("score", self.vectors, "answers.csv").splitlines()
+        self.assertEqual(table[2].split(), ["jump", "1", "0", *"-------"])
 
     def test_help_says_how_digits_are_counted(self):
         text = self.output_of("score", "--help")
-        for words in ("-log10", "error_bound", "raytruth score vectors.json answers.csv", "without an"):
+        for words in ("-log10", "error_bound", "raytruth score vectors.json answers.csv", "counted over what was answered", "--emission", "vectors/1"):
             self.assertIn(words, text)
 
     def test_bad_answers(self):
@@ -245,7 +373,7 @@ class Scores(ProgramTest):
     def test_bad_vectors(self):
         answers = self.write("answers.csv", csv(self.answers))
         for pointer, wrong, words in [
-            ("/raytruth", "vectors/2", "vectors/1"),
+            ("/raytruth", "vectors/3", "vectors/1"),
             ("/raytruth", ..., "found nothing"),
             ("/vectors", [], "at least 1"),
             ("/colour", 1, "unknown key"),
@@ -270,6 +398,7 @@ class AnswersOfOurOwn(ProgramTest):
         vectors = json.loads(COMMITTED.read_text())["vectors"]
         experiment = json.loads((SOURCE / "experiments/conformance.json").read_text())
         (measure,) = experiment["measures"]
+        measure["vectors"] = "vectors/2"
         cases = []
         for vector in vectors:
             if "slab" in vector:
@@ -288,7 +417,10 @@ class AnswersOfOurOwn(ProgramTest):
                 }
             )
         answers = self.json_of("eval", "-", stdin=cases)
-        rows = self.json_of("run", SOURCE / "experiments/conformance.json")["rows"]
+        rows = self.json_of("run", self.write("conformance.json", experiment))["rows"]
+        first = self.json_of("run", SOURCE / "experiments/conformance.json")["rows"]
+        self.assertEqual(first, json.loads((SOURCE / "results/conformance.json").read_text())["rows"])
+        self.assertEqual([row for row in first if row["level"] != "all"], [row for row in rows if row["level"] in {row["level"] for row in first} - {"all"}])
         for name in experiment["schemes"]:
             schemes = {vector["id"]: answer["schemes"][name] for vector, answer in zip(vectors, answers)}
             text = csv({id: [*scheme["color"], scheme["opacity"]] for id, scheme in schemes.items()})

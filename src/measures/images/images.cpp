@@ -683,7 +683,7 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 extern const Measure images_measure;
 const Measure images_measure{MeasureDefinition<Options, Record>{
     .name = "images",
-    .summary = "views of volumes in many ways, against the certified image and each other",
+    .summary = "views of volumes in many ways, against each other and the true image: certified, or, where lit, estimated",
     .needs = {.transfers = true},
     .read = read_options,
     .columns = columns,

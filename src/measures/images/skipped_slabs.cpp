@@ -26,7 +26,7 @@ class Counter {
   explicit Counter(const Scene& scene)
       : scene_(scene),
         view_(scene.camera, scene.grid.spacing),
-        field_(ray_field(scene.grid, scene.field)),
+        field_(ray_field(scene.grid, scene.field, scene.border)),
         grid_(std::visit([](const auto& field) -> const Grid& { return field.grid(); }, field_)),
         clear_(scene.transfer, scene.emission),
         blocks_(grid_, clear_, scene.empty_space->block,
@@ -72,7 +72,7 @@ class Counter {
 
   void count(const PixelRay& pixel) {
     const auto direction = unit_direction(pixel.ray.direction);
-    const Span inside = clip(grid_.size, pixel.ray.origin, direction);
+    const Span inside = clip(grid_.size, scene_.border, pixel.ray.origin, direction);
     if (!(inside.begin < inside.end)) return;
     const auto begin = static_cast<double>(inside.begin);
     std::array<double, 3> entry{};

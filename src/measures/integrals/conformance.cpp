@@ -19,11 +19,15 @@ constexpr std::int64_t most_intervals = 1'000'000;
 
 struct Options {
   std::int64_t intervals = 0;  ///< equal ones along a ray
+  VectorForm form = VectorForm::first;
 };
 
 Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
-  json.only({"kind", "intervals"});
-  const Options options{.intervals = json.at("intervals").integer(1, most_intervals)};
+  json.only({"kind", "intervals", "vectors"});
+  Options options{.intervals = json.at("intervals").integer(1, most_intervals)};
+  const auto vectors = json.find("vectors");
+  if (vectors && vectors->word({vector_form_names.begin(), vector_form_names.end()}) == vector_form_names.back())
+    options.form = VectorForm::second;
   return options;
 }
 
@@ -76,7 +80,7 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
 }
 
 std::vector<Record> records(const Experiment& experiment, const Options& options) {
-  const auto vectors = conformance_vectors(experiment.seed);
+  const auto vectors = conformance_vectors(experiment.seed, options.form);
   std::vector<ScoredVector> scored(vectors.size());
   tbb::parallel_for(std::size_t{0}, vectors.size(), [&](std::size_t i) {
     scored[i] = {vectors[i].id, std::string(vectors[i].level), truth_of(vectors[i]), std::nullopt};

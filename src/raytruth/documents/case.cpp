@@ -72,13 +72,17 @@ void read_analytic(const JsonReader& json, Case& ray) {
 
 /// The ray's signal, and how far it may be from the field where that is asked for.
 template <class Field>
-void trace(const JsonReader& json, const Field& field, const Ray& ray, Case& result) {
+void trace(const JsonReader& json, const Field& field, const Ray& ray, Case& result,
+           std::vector<std::string>& warnings) {
   Chain<Field::degree> chain;
   json.at("origin").blame_for([&] {
     field.trace(ray, chain);
     return 0;
   });
   if (result.transfer) result.signal_error = field.error(ray, chain);
+  result.border = field.border();
+  if (chain.pieces.empty() && has_no_extent(field.grid(), field.border()))
+    warnings.push_back(fmt::format("{}: warning: the ray is empty: {}", json.place(), why_no_extent));
   result.signal = std::move(chain);
 }
 
@@ -242,16 +246,18 @@ Case CaseReader::read(const JsonReader& json, std::vector<std::string>& warnings
 }
 
 void CaseReader::read_trilinear(const JsonReader& json, Case& result, std::vector<std::string>& warnings) {
-  json.only({"kind", "volume", "repair", "nan", "time_step", "spacing", "origin", "direction", "length"});
+  json.only({"kind", "volume", "repair", "nan", "time_step", "spacing", "border", "origin", "direction", "length"});
   const Ray ray = read_ray(json);
+  const Border border = read_border(json);
   const Grid& grid = read_volume_of(json, warnings);
-  trace(json, TrilinearField(grid), ray, result);
+  trace(json, TrilinearField(grid, border), ray, result, warnings);
 }
 
 void CaseReader::read_tricubic(const JsonReader& json, Case& result, std::vector<std::string>& warnings) {
-  json.only({"kind", "volume", "repair", "nan", "time_step", "spacing", "origin", "direction", "length", "kernel",
-             "prefilter"});
+  json.only({"kind", "volume", "repair", "nan", "time_step", "spacing", "border", "origin", "direction", "length",
+             "kernel", "prefilter"});
   const Ray ray = read_ray(json);
+  const Border border = read_border(json);
   const bool is_bspline = json.at("kernel").word({"bspline", "catmull_rom"}) == "bspline";
   const auto prefilter = json.find("prefilter");
   const bool is_prefiltered = prefilter && prefilter->boolean();
@@ -259,7 +265,7 @@ void CaseReader::read_tricubic(const JsonReader& json, Case& result, std::vector
   const FieldKind kind = !is_bspline      ? FieldKind::catmull_rom
                          : is_prefiltered ? FieldKind::bspline_prefiltered
                                           : FieldKind::bspline;
-  trace(json, TricubicField(read_volume_of(json, warnings), kind), ray, result);
+  trace(json, TricubicField(read_volume_of(json, warnings), kind, border), ray, result, warnings);
 }
 
 const Grid& CaseReader::read_volume_of(const JsonReader& signal, std::vector<std::string>& warnings) {
@@ -290,9 +296,10 @@ Json evaluate(const Case& ray) {
           for (const std::string& scheme : ray.schemes)
             if (scheme != "reference") schemes[scheme] = answer_of(scheme);
         }
-        Json answer{{"length", signal.length()},
-                    {"reference", truth ? truth_json(*truth) : refused(why_no_integral)},
-                    {"schemes", std::move(schemes)}};
+        Json answer{{"length", signal.length()}};
+        if (ray.border) answer["border"] = name_of(*ray.border);
+        answer["reference"] = truth ? truth_json(*truth) : refused(why_no_integral);
+        answer["schemes"] = std::move(schemes);
         if (!ray.transfer_description.is_null()) answer["transfer_function"] = ray.transfer_description;
         return answer;
       },

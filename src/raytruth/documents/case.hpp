@@ -6,6 +6,7 @@
 #include "raytruth/reference/arb_integral.hpp"
 #include "raytruth/schemes/sampling.hpp"
 #include "raytruth/signals/analytic.hpp"
+#include "raytruth/signals/border.hpp"
 #include "raytruth/signals/piecewise_polynomial.hpp"
 #include "raytruth/signals/signal_error_bound.hpp"
 #include "raytruth/transfer/emission.hpp"
@@ -33,6 +34,7 @@ struct Case {
   std::variant<Chain<3>, Chain<largest_degree>> signal = {};
   SignalError signal_error = {};                                                ///< of the chain
   std::variant<std::monostate, MarschnerLobbRay, AnalyticSignal> formula = {};  ///< that the chain only approximates
+  std::optional<Border> border = {};                                            ///< of the volume, if there is one
 };
 
 /// Reads cases one after the other; keeps the volume that was read last, for the cases of a list often share it.

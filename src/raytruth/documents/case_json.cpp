@@ -16,6 +16,13 @@ Emission read_emission(const JsonReader& json) {
   return emission && emission->word({"associated", "plain"}) == "plain" ? Emission::plain : Emission::associated;
 }
 
+Border read_border(const JsonReader& json) {
+  const auto border = json.find("border");
+  if (!border) return Border::half_voxel;
+  const std::string name = border->word({border_names.begin(), border_names.end()});
+  return static_cast<Border>(std::find(border_names.begin(), border_names.end(), name) - border_names.begin());
+}
+
 std::vector<std::string> read_schemes(const JsonReader& json, const std::vector<std::string_view>& names) {
   std::vector<std::string_view> allowed{"reference"};
   allowed.insert(allowed.end(), names.begin(), names.end());

@@ -4,6 +4,7 @@
 #include "raytruth/documents/json/json_reader.hpp"
 #include "raytruth/reference/certified.hpp"
 #include "raytruth/schemes/sampling.hpp"
+#include "raytruth/signals/border.hpp"
 #include "raytruth/transfer/emission.hpp"
 
 #include <nlohmann/json.hpp>
@@ -22,6 +23,9 @@ Vector3<double> read_vector(const JsonReader& json);
 
 /// The member "emission", `associated` where there is none.
 Emission read_emission(const JsonReader& json);
+
+/// The member "border", which says where the volume of a scene or a signal ends: `half_voxel` where there is none.
+Border read_border(const JsonReader& json);
 
 /// Words of the list, each once: "reference" or one of `names`.
 std::vector<std::string> read_schemes(const JsonReader& json, const std::vector<std::string_view>& names);

@@ -21,8 +21,10 @@ nlohmann::ordered_json evaluate(const SceneFile& asked) {
   if (scene.shading) scene.shading->method = nullptr;
   scene.covers_camera = true;
   const Rendering truth = Renderer(std::move(scene)).render();
-  nlohmann::ordered_json result{
-      {"size", asked.scene.camera.size}, {"reference", radius_json(truth)}, {"scheme", asked.scene.scheme}};
+  nlohmann::ordered_json result{{"size", asked.scene.camera.size},
+                                {"border", name_of(asked.scene.border)},
+                                {"reference", radius_json(truth)},
+                                {"scheme", asked.scene.scheme}};
   if (!asked.fitted_camera.is_null()) result["fitted_camera"] = asked.fitted_camera;
   if (!asked.warnings.empty()) result["warnings"] = asked.warnings;
   if (asked.scene.scheme != "reference")

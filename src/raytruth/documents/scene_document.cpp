@@ -201,12 +201,14 @@ std::string read_scheme(const JsonReader& json) {
 
 SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   check_form(json, "scene/1");
-  json.only({"raytruth", "volume", "repair", "nan", "time_step", "spacing", "reconstruction", "transfer_function",
-             "emission", "camera", "scheme", "step", "shading", "table", "early_termination", "empty_space"});
+  json.only({"raytruth", "volume", "repair", "nan", "time_step", "spacing", "border", "reconstruction",
+             "transfer_function", "emission", "camera", "scheme", "step", "shading", "table", "early_termination",
+             "empty_space"});
   const std::string scheme = read_scheme(json.at("scheme"));
   SceneFile result{.scene = {.transfer = PiecewiseLinear(std::vector<TransferPoint>(1)), .scheme = scheme}};
   Scene& scene = result.scene;
   if (const auto kind = json.find("reconstruction")) scene.field = read_word<FieldKind>(*kind, field_kind_names);
+  scene.border = read_border(json);
   scene.emission = read_emission(json);
   if (const auto step = json.find("step")) scene.step = step->positive_number();
   if (const auto table = json.find("table")) scene.table = read_table(*table, scheme);

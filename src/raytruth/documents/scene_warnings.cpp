@@ -19,7 +19,7 @@ bool meets_volume(const Scene& scene) {
   for (std::int64_t row = 0; row < height; ++row)
     for (std::int64_t column = 0; column < width; ++column) {
       const Ray ray = view(column, row).ray;
-      const Span inside = clip(scene.grid.size, ray.origin, ray.direction);
+      const Span inside = clip(scene.grid.size, scene.border, ray.origin, ray.direction);
       if (inside.begin < inside.end) return true;
     }
   return false;
@@ -30,14 +30,15 @@ bool meets_volume(const Scene& scene) {
 void warn_of_what_is_not_seen(const Scene& scene, std::vector<std::string>& warnings) {
   if (!meets_volume(scene)) {
     const Grid& grid = scene.grid;
-    const auto side = [&grid](std::size_t axis) {
-      return fmt::format("{} to {}", -0.5 * grid.spacing[axis],
-                         (static_cast<double>(grid.size[axis]) - 0.5) * grid.spacing[axis]);
+    const auto side = [&grid, margin = margin_of(scene.border)](std::size_t axis) {
+      return fmt::format("{} to {}", 0.0 - margin * grid.spacing[axis],
+                         (static_cast<double>(grid.size[axis] - 1) + margin) * grid.spacing[axis]);
     };
     warnings.push_back(fmt::format(
         "no ray of the camera meets the volume, which lies from x = {}, y = {}, z = {} in world coordinates; a scene "
         "without \"camera\" gets one that fits",
         side(0), side(1), side(2)));
+    if (has_no_extent(grid, scene.border)) warnings.emplace_back(why_no_extent);
   }
   const auto [low, high] = scene.grid.range();
   const auto& points = scene.transfer.points();

@@ -61,7 +61,7 @@ struct BallSpan {
   [[nodiscard]] Ball length() const { return max(end - begin, 0.0); }
 };
 
-BallSpan clipped(const BallRay& ray, const std::array<std::int64_t, 3>& size) {
+BallSpan clipped(const BallRay& ray, const std::array<std::int64_t, 3>& size, Border border) {
   BallSpan span;
   // Beyond what the ray can have gone when it leaves the field.
   Ball farthest = 1.0;
@@ -69,8 +69,8 @@ BallSpan clipped(const BallRay& ray, const std::array<std::int64_t, 3>& size) {
     farthest += ray.origin[axis].magnitude() + Ball(static_cast<double>(size[axis]));
   bool has_end = false;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Ball low = -0.5;
-    const Ball high = Ball(static_cast<double>(size[axis])) - 0.5;
+    const Ball low = -margin_of(border);
+    const Ball high = Ball(static_cast<double>(size[axis] - 1)) + margin_of(border);
     const Ball& origin = ray.origin[axis];
     const Ball& direction = ray.direction[axis];
     if (const int sign = direction.sign(); sign != 0) {
@@ -99,6 +99,7 @@ struct CameraRounding::Parts {
   bool is_perspective;
   std::array<std::int64_t, 2> image_size;
   std::array<std::int64_t, 3> size;
+  Border border;
   BallVector spacing;
   Ball smallest_spacing;
   BallVector eye;
@@ -106,10 +107,12 @@ struct CameraRounding::Parts {
   BallVector to_right;
   BallVector to_top;
 
-  Parts(const Camera& camera, const std::array<double, 3>& its_spacing, const std::array<std::int64_t, 3>& its_size)
+  Parts(const Camera& camera, const std::array<double, 3>& its_spacing, const std::array<std::int64_t, 3>& its_size,
+        Border its_border)
       : is_perspective(std::holds_alternative<Perspective>(camera.projection)),
         image_size(camera.size),
         size(its_size),
+        border(its_border),
         spacing(exactly(its_spacing)),
         smallest_spacing(*std::min_element(its_spacing.begin(), its_spacing.end())),
         eye(exactly(camera.eye)),
@@ -141,15 +144,15 @@ struct CameraRounding::Parts {
 };
 
 CameraRounding::CameraRounding(const Camera& camera, const std::array<double, 3>& spacing,
-                               const std::array<std::int64_t, 3>& size)
-    : parts_(std::make_unique<const Parts>(camera, spacing, size)) {}
+                               const std::array<std::int64_t, 3>& size, Border border)
+    : parts_(std::make_unique<const Parts>(camera, spacing, size, border)) {}
 CameraRounding::~CameraRounding() = default;
 
 RayDisplacement CameraRounding::operator()(std::int64_t column, std::int64_t row, const PixelRay& rounded) const {
   const auto [ray, unit] = parts_->meant(column, row);
   const BallRay at_hand{exactly(rounded.ray.origin), normalised(exactly(rounded.ray.direction))};
-  const BallSpan span = clipped(ray, parts_->size);
-  const BallSpan span_at_hand = clipped(at_hand, parts_->size);
+  const BallSpan span = clipped(ray, parts_->size, parts_->border);
+  const BallSpan span_at_hand = clipped(at_hand, parts_->size, parts_->border);
   const Ball shrinking = Ball(rounded.length_unit) / unit;  // what one voxel at hand is of one along the ray meant
   const Ball of_length = span.length() / shrinking - span_at_hand.length();
   RayDisplacement result{.of_length = upper_magnitude(of_length)};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "raytruth/render/camera.hpp"
+#include "raytruth/signals/border.hpp"
 #include "raytruth/signals/ray_displacement.hpp"
 
 #include <array>
@@ -15,8 +16,9 @@ namespace raytruth {
 /// as along an axis through the middle of an image.
 class CameraRounding {
  public:
-  /// Takes a camera and spacing that CameraView does not refuse, and the size of the grid.
-  CameraRounding(const Camera& camera, const std::array<double, 3>& spacing, const std::array<std::int64_t, 3>& size);
+  /// Takes a camera and spacing that CameraView does not refuse, the size of the grid, and where it ends.
+  CameraRounding(const Camera& camera, const std::array<double, 3>& spacing, const std::array<std::int64_t, 3>& size,
+                 Border border = Border::half_voxel);
   ~CameraRounding();
   CameraRounding(const CameraRounding&) = delete;
   CameraRounding& operator=(const CameraRounding&) = delete;

@@ -69,7 +69,7 @@ PixelRendererFactory factory_of(const PreparedScene& prepared) {
 PreparedScene::PreparedScene(Scene its_scene)
     : scene(std::move(its_scene)),
       view(scene.camera, scene.grid.spacing),
-      field(ray_field(scene.grid, scene.field)),
+      field(ray_field(scene.grid, scene.field, scene.border)),
       placing_error(placing_error_of(scene, view)) {
   refuse_far_cameras(scene, view);
   // A longer step makes the same samples, both ends of the ray, but numbers that nobody can calculate with.
@@ -80,7 +80,7 @@ struct Renderer::Parts {
   explicit Parts(Scene its_scene) : prepared(std::move(its_scene)), make_renderer(factory_of(prepared)) {
     const Scene& scene = prepared.scene;
     if (scene.covers_camera && scene.scheme == "reference" && !scene.shading)
-      camera_rounding.emplace(scene.camera, scene.grid.spacing, scene.grid.size);
+      camera_rounding.emplace(scene.camera, scene.grid.spacing, scene.grid.size, scene.border);
   }
 
   [[nodiscard]] PixelRay ray(std::int64_t column, std::int64_t row) const {

@@ -4,6 +4,7 @@
 #include "raytruth/shading/gooch.hpp"
 #include "raytruth/shading/lighting.hpp"
 #include "raytruth/shading/slab_shading.hpp"
+#include "raytruth/signals/border.hpp"
 #include "raytruth/signals/field_kind.hpp"
 #include "raytruth/skipping/occupied_blocks.hpp"
 #include "raytruth/tables/look_up.hpp"
@@ -55,6 +56,7 @@ struct SceneShading {
 struct Scene {
   Grid grid = {};
   FieldKind field = FieldKind::trilinear;
+  Border border = Border::half_voxel;
   PiecewiseLinear transfer;
   Emission emission = Emission::associated;
   Camera camera = {};

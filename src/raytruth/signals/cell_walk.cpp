@@ -2,12 +2,12 @@
 
 namespace raytruth {
 
-Span clip(const std::array<std::int64_t, 3>& size, const std::array<double, 3>& origin,
+Span clip(const std::array<std::int64_t, 3>& size, Border border, const std::array<double, 3>& origin,
           const std::array<double, 3>& direction) {
   Span span;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double low = -0.5;
-    const double high = static_cast<double>(size[axis]) - 0.5;
+    const double low = -margin_of(border);
+    const double high = static_cast<double>(size[axis] - 1) + margin_of(border);
     if (direction[axis] == 0) {
       if (origin[axis] < low || origin[axis] > high) return {0.0, 0.0};
       continue;

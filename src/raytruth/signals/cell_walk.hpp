@@ -3,6 +3,7 @@
 #include "raytruth/core/chain.hpp"
 #include "raytruth/core/double_double.hpp"
 #include "raytruth/core/error.hpp"
+#include "raytruth/signals/border.hpp"
 #include "raytruth/signals/ray.hpp"
 
 #include <fmt/format.h>
@@ -120,13 +121,13 @@ class CellWalk {
   PerAxis local_high_, local_low_, crossing_high_, crossing_low_, crosses_, begin_, end_;
 };
 
-/// The span of the line origin + t direction inside [-1/2, size - 1/2] on every axis; none where its end is not
-/// behind its begin.
+/// The span of the line origin + t direction inside of a volume, [-margin_of(border), size - 1 + margin_of(border)] on
+/// every axis; none where its end is not behind its begin.
 struct Span {
   DoubleDouble begin;
   DoubleDouble end = std::numeric_limits<double>::infinity();
 };
-Span clip(const std::array<std::int64_t, 3>& size, const std::array<double, 3>& origin,
+Span clip(const std::array<std::int64_t, 3>& size, Border border, const std::array<double, 3>& origin,
           const std::array<double, 3>& direction);
 
 /// The chain along a ray through a grid: `cell_polynomial(walk)` gives the signal on the segment through the walk's
@@ -135,7 +136,7 @@ Span clip(const std::array<std::int64_t, 3>& size, const std::array<double, 3>& 
 /// negative length, or an origin farther than 2^40 voxels: from there, 106 bits would no longer give cell-local
 /// coordinates to the last bit.
 template <int Degree, class CellPolynomial>
-void trace_cells(const std::array<std::int64_t, 3>& size, const Ray& ray, Chain<Degree>& chain,
+void trace_cells(const std::array<std::int64_t, 3>& size, Border border, const Ray& ray, Chain<Degree>& chain,
                  CellPolynomial&& cell_polynomial) {
   chain.pieces.clear();
   chain.end = 0.0;
@@ -145,7 +146,7 @@ void trace_cells(const std::array<std::int64_t, 3>& size, const Ray& ray, Chain<
       throw InputError(fmt::format("origin coordinate {}; magnitudes up to 2^40 voxels are allowed", x));
   if (!(ray.length >= 0)) throw InputError(fmt::format("length {}; numbers >= 0 are allowed", ray.length));
 
-  const Span span = clip(size, ray.origin, direction);
+  const Span span = clip(size, border, ray.origin, direction);
   if (!(span.begin < span.end) || ray.length == 0) return;
   const DoubleDouble end = std::min(span.end - span.begin, DoubleDouble(ray.length));
   // Crossings that differ by less than the rounding of a double-double abscissa are one crossing.

@@ -2,7 +2,7 @@
 
 namespace raytruth {
 
-ExactLine::ExactLine(const std::array<std::int64_t, 3>& grid_size, const Ray& ray)
+ExactLine::ExactLine(const std::array<std::int64_t, 3>& grid_size, Border border, const Ray& ray)
     : size(grid_size), origin(ray.origin), direction(ray.direction), cut(ray.length) {
   static_cast<void>(unit_direction(direction));  // for what it refuses
   int exponent = 0;
@@ -18,7 +18,7 @@ ExactLine::ExactLine(const std::array<std::int64_t, 3>& grid_size, const Ray& ra
   norm = DoubleDouble(root) + (square - two_product(root, root)) / (2 * root);
   const double inverse = 1 / norm.high;
   inverse_norm = DoubleDouble(inverse) + (DoubleDouble(1) - norm * inverse) * inverse;
-  inside = clip(size, origin, direction);
+  inside = clip(size, border, origin, direction);
 }
 
 double ExactLine::length_error(const DoubleDouble& chain_end) const {

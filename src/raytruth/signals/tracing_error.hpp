@@ -3,6 +3,7 @@
 #include "raytruth/core/chain.hpp"
 #include "raytruth/core/double_double.hpp"
 #include "raytruth/core/double_double4.hpp"
+#include "raytruth/signals/border.hpp"
 #include "raytruth/signals/cell_walk.hpp"
 #include "raytruth/signals/ray.hpp"
 #include "raytruth/signals/ray_displacement.hpp"
@@ -26,7 +27,7 @@ struct ExactLine {
   static constexpr double noise = 0x1p-96;
 
   /// Throws InputError for a bad direction.
-  ExactLine(const std::array<std::int64_t, 3>& grid_size, const Ray& ray);
+  ExactLine(const std::array<std::int64_t, 3>& grid_size, Border border, const Ray& ray);
 
   /// lambda at a t that counts from the entry into the clamped field.
   [[nodiscard]] DoubleDouble at(const DoubleDouble& t) const { return inside.begin + t * inverse_norm; }
@@ -150,14 +151,14 @@ struct Reconstruction {
 ///
 /// Nothing is computed for pieces of which `is_needless` says so: their bounds are 0 and mean nothing.
 template <int Degree, class Exact>
-SignalError tracing_error(const Grid& grid, const Ray& ray, const Chain<Degree>& chain,
+SignalError tracing_error(const Grid& grid, Border border, const Ray& ray, const Chain<Degree>& chain,
                           const Reconstruction& reconstruction, const std::vector<bool>& is_needless,
                           const RayDisplacement& displacement, Exact&& exact) {
   constexpr double value_noise = 0x1p-92;
   // It makes up for the rounding of the bounds themselves, sums of some twenty terms >= 0.
   constexpr double upwards = 1 + 0x1p-46;
 
-  const ExactLine line(grid.size, ray);
+  const ExactLine line(grid.size, border, ray);
   SignalError error{.of_pieces = {}, .of_length = line.length_error(chain.end) + displacement.of_length};
   error.of_pieces.reserve(chain.pieces.size());
   DoubleDouble lambda_end = line.at(0.0);

@@ -128,22 +128,22 @@ void prefilter_line(double* values, std::int64_t count, std::int64_t stride, std
 }  // namespace
 
 RAYTRUTH_DISPATCH
-void trace_tricubic(const Grid& grid, CubicKernel kernel, const Ray& ray, Chain<9>& chain) {
+void trace_tricubic(const Grid& grid, CubicKernel kernel, const Ray& ray, Chain<9>& chain, Border border) {
   const auto matrix = kernel_matrix<double>(kernel);
-  trace_cells(grid.size, ray, chain,
+  trace_cells(grid.size, border, ray, chain,
               [&](const CellWalk& walk) { return cell_polynomial(grid, matrix, walk.segment()); });
 }
 
 RAYTRUTH_DISPATCH
 SignalError tricubic_error(const Grid& grid, CubicKernel kernel, const Ray& ray, const Chain<9>& chain,
                            double coefficient_error, const std::vector<bool>& is_needless,
-                           const RayDisplacement& displacement) {
+                           const RayDisplacement& displacement, Border border) {
   const auto matrix = kernel_matrix<DoubleDouble>(kernel);
   // The derivative of a B-spline is a mean of differences. Bernstein coefficients of a Catmull-Rom cubic are sums of
   // voxels with weights of magnitude 4/3 in all, those of its derivative sums of differences with 3: (4/3)^2 3.
   const Reconstruction tricubic{.margin = 1, .slope = kernel == CubicKernel::bspline ? 1 : 16.0 / 3};
   SignalError error =
-      tracing_error(grid, ray, chain, tricubic, is_needless, displacement,
+      tracing_error(grid, border, ray, chain, tricubic, is_needless, displacement,
                     [&](const CellSegment<DoubleDouble>& segment) { return cell_polynomial(grid, matrix, segment); });
   for (double& of_piece : error.of_pieces) of_piece += coefficient_error;
   return error;

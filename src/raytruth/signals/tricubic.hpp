@@ -1,6 +1,7 @@
 #pragma once
 
 #include "raytruth/core/chain.hpp"
+#include "raytruth/signals/border.hpp"
 #include "raytruth/signals/ray.hpp"
 #include "raytruth/signals/ray_displacement.hpp"
 #include "raytruth/signals/signal_error_bound.hpp"
@@ -37,13 +38,14 @@ Real kernel_coefficient(CubicKernel kernel, std::size_t coefficient, std::size_t
 ///     c_m = sum over i + j + k = m of binomial(3,i) binomial(3,j) binomial(3,k) / binomial(9,m) b_ijk:
 /// a mean with positive weights. Neighbouring pieces meet to rounding. Clipping, clamping and errors are those of
 /// `trace_trilinear`; for an interpolating B-spline pass the grid of `bspline_coefficients`.
-void trace_tricubic(const Grid& grid, CubicKernel kernel, const Ray& ray, Chain<9>& chain);
+void trace_tricubic(const Grid& grid, CubicKernel kernel, const Ray& ray, Chain<9>& chain,
+                    Border border = Border::half_voxel);
 
 /// Bounds as those of `trilinear_error`. `coefficient_error` bounds the error of each voxel of `grid`, for B-spline
 /// coefficients that were made from others: `prefilter_error`. B-splines being means, the signal is off by no more.
 SignalError tricubic_error(const Grid& grid, CubicKernel kernel, const Ray& ray, const Chain<9>& chain,
                            double coefficient_error = 0, const std::vector<bool>& is_needless = {},
-                           const RayDisplacement& displacement = {});
+                           const RayDisplacement& displacement = {}, Border border = Border::half_voxel);
 
 /// The coefficients of the cubic B-spline that passes through the voxels of a clamped grid: on every line the
 /// tridiagonal system (c_{i-1} + 4 c_i + c_{i+1}) / 6 = v_i with c_{-1} = c_0, c_n = c_{n-1}, axis after axis (M.

@@ -101,21 +101,22 @@ Bernstein<3, DoubleDouble> cell_cubic(const Grid& grid, const CellSegment<Double
 }  // namespace
 
 RAYTRUTH_DISPATCH
-void trace_trilinear(const Grid& grid, const Ray& ray, Chain<3>& chain) {
-  trace_cells(grid.size, ray, chain, [&grid](const CellWalk& walk) { return cell_cubic(grid, walk.segment()); });
+void trace_trilinear(const Grid& grid, const Ray& ray, Chain<3>& chain, Border border) {
+  trace_cells(grid.size, border, ray, chain,
+              [&grid](const CellWalk& walk) { return cell_cubic(grid, walk.segment()); });
 }
 
-Chain<3> trace_trilinear(const Grid& grid, const Ray& ray) {
+Chain<3> trace_trilinear(const Grid& grid, const Ray& ray, Border border) {
   Chain<3> chain;
-  trace_trilinear(grid, ray, chain);
+  trace_trilinear(grid, ray, chain, border);
   return chain;
 }
 
 RAYTRUTH_DISPATCH
 SignalError trilinear_error(const Grid& grid, const Ray& ray, const Chain<3>& chain,
-                            const std::vector<bool>& is_needless, const RayDisplacement& displacement) {
+                            const std::vector<bool>& is_needless, const RayDisplacement& displacement, Border border) {
   const Reconstruction trilinear{.margin = 0, .slope = 1};
-  return tracing_error(grid, ray, chain, trilinear, is_needless, displacement,
+  return tracing_error(grid, border, ray, chain, trilinear, is_needless, displacement,
                        [&grid](const CellSegment<DoubleDouble>& segment) { return cell_cubic(grid, segment); });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "raytruth/core/chain.hpp"
+#include "raytruth/signals/border.hpp"
 #include "raytruth/signals/ray.hpp"
 #include "raytruth/signals/ray_displacement.hpp"
 #include "raytruth/signals/signal_error_bound.hpp"
@@ -21,12 +22,13 @@ namespace raytruth {
 /// rounded unit direction, to a few ulps of the largest voxel involved, at any distance; neighbouring pieces share
 /// the bits of the value at their common border.
 ///
-/// The field is clamped (as GL_CLAMP_TO_EDGE) and ends at [-1/2, n - 1/2] on every axis; how the ray is clipped to it,
-/// and what is refused (InputError), stands at `trace_cells`. `chain` is overwritten and keeps its memory.
-void trace_trilinear(const Grid& grid, const Ray& ray, Chain<3>& chain);
+/// The field is clamped (as GL_CLAMP_TO_EDGE) and ends at [-1/2, n - 1/2] on every axis, or at [0, n - 1] (`border`);
+/// how the ray is clipped to it, and what is refused (InputError), stands at `trace_cells`. `chain` is overwritten and
+/// keeps its memory.
+void trace_trilinear(const Grid& grid, const Ray& ray, Chain<3>& chain, Border border = Border::half_voxel);
 
 /// The chain as a new one.
-Chain<3> trace_trilinear(const Grid& grid, const Ray& ray);
+Chain<3> trace_trilinear(const Grid& grid, const Ray& ray, Border border = Border::half_voxel);
 
 /// How far the chain of a ray may be from the signal along the ray at its exactly normalised direction: bounds for all
 /// that is rounded in the unit vector, the entry, the breaks and the coefficients, made by computing the coefficients a
@@ -34,6 +36,7 @@ Chain<3> trace_trilinear(const Grid& grid, const Ray& ray);
 /// a chain may reach by rounding, s is the clamped field's. Zero where all voxels in reach are equal. `is_needless`
 /// marks pieces whose errors nobody asks for. `displacement`: the signal that is meant is that of a ray so far away.
 SignalError trilinear_error(const Grid& grid, const Ray& ray, const Chain<3>& chain,
-                            const std::vector<bool>& is_needless = {}, const RayDisplacement& displacement = {});
+                            const std::vector<bool>& is_needless = {}, const RayDisplacement& displacement = {},
+                            Border border = Border::half_voxel);
 
 }  // namespace raytruth

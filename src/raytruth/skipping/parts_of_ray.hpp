@@ -1,6 +1,7 @@
 #pragma once
 
 #include "raytruth/schemes/omissions.hpp"
+#include "raytruth/signals/border.hpp"
 #include "raytruth/signals/cell_walk.hpp"
 #include "raytruth/signals/ray.hpp"
 #include "raytruth/skipping/occupied_blocks.hpp"
@@ -18,13 +19,14 @@ namespace raytruth {
 class PartsOfRay {
  public:
   /// `blocks` null: all of every ray is looked at.
-  PartsOfRay(const std::array<std::int64_t, 3>& size, const OccupiedBlocks* blocks) : size_(size), blocks_(blocks) {}
+  PartsOfRay(const std::array<std::int64_t, 3>& size, Border border, const OccupiedBlocks* blocks)
+      : size_(size), border_(border), blocks_(blocks) {}
 
   /// The parts, in `unit`s of a voxel behind the ray's entry; none: all of it. They are valid until the next call.
   std::optional<std::span<const RayPart>> operator()(const Ray& ray, double unit = 1) {
     if (blocks_ == nullptr) return std::nullopt;
     parts_.clear();
-    const Span inside = clip(size_, ray.origin, ray.direction);
+    const Span inside = clip(size_, border_, ray.origin, ray.direction);
     if (inside.begin < inside.end) {
       const auto begin = static_cast<double>(inside.begin);
       std::array<double, 3> entry{};
@@ -37,6 +39,7 @@ class PartsOfRay {
 
  private:
   std::array<std::int64_t, 3> size_;
+  Border border_;
   const OccupiedBlocks* blocks_;
   std::vector<RayPart> parts_;
 };

@@ -25,6 +25,7 @@ namespace raytruth {
 namespace {
 
 using testing_support::exactly_directed_ray;
+using testing_support::ExactRay;
 using testing_support::in_50_digits;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -78,25 +79,26 @@ Comparison expect_bounds(const Signal& signal, const Chain<Degree>& chain, const
   return comparison;
 }
 
-void expect_length(const Grid& grid, const Ray& ray, const DoubleDouble& end, const SignalError& error) {
-  const Real50 exact = std::max(exactly_directed_ray(grid, ray).length, Real50(0));
+void expect_length(const ExactRay& ray, const DoubleDouble& end, const SignalError& error) {
+  const Real50 exact = std::max(ray.length, Real50(0));
   EXPECT_LE(abs(in_50_digits(end) - exact), error.of_length);
 }
 
-Comparison expect_trilinear(const Grid& grid, const Ray& ray, std::size_t stride = 1) {
-  const Chain<3> chain = trace_trilinear(grid, ray);
-  const SignalError error = trilinear_error(grid, ray, chain);
-  expect_length(grid, ray, chain.end, error);
-  const auto exact = exactly_directed_ray(grid, ray);
+Comparison expect_trilinear(const Grid& grid, const Ray& ray, std::size_t stride = 1,
+                            Border border = Border::half_voxel) {
+  const Chain<3> chain = trace_trilinear(grid, ray, border);
+  const SignalError error = trilinear_error(grid, ray, chain, {}, {}, border);
+  const auto exact = exactly_directed_ray(grid, ray, border);
+  expect_length(exact, chain.end, error);
   return expect_bounds([&](const Real50& t) { return trilinear_value(grid, exact.point(t)); }, chain, error, stride);
 }
 
-Comparison expect_tricubic(const Grid& grid, CubicKernel kernel, const Ray& ray) {
+Comparison expect_tricubic(const Grid& grid, CubicKernel kernel, const Ray& ray, Border border = Border::half_voxel) {
   Chain<9> chain;
-  trace_tricubic(grid, kernel, ray, chain);
-  const SignalError error = tricubic_error(grid, kernel, ray, chain);
-  expect_length(grid, ray, chain.end, error);
-  const auto exact = exactly_directed_ray(grid, ray);
+  trace_tricubic(grid, kernel, ray, chain, border);
+  const SignalError error = tricubic_error(grid, kernel, ray, chain, 0, {}, {}, border);
+  const auto exact = exactly_directed_ray(grid, ray, border);
+  expect_length(exact, chain.end, error);
   return expect_bounds([&](const Real50& t) { return tricubic_value(grid, kernel, exact.point(t)); }, chain, error);
 }
 
@@ -234,6 +236,27 @@ TEST(SignalErrorBound, DegenerateRays) {
       expect_trilinear(box, hard_rays()[i]);
       expect_tricubic(box, CubicKernel::bspline, hard_rays()[i]);
       expect_tricubic(box, CubicKernel::catmull_rom, hard_rays()[i]);
+    }
+  }
+}
+
+TEST(SignalErrorBound, HoldWhereVolumesEndAtVoxelCentres) {
+  const Grid grid = random_field(24, 0, 6);
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    SCOPED_TRACE("ray " + std::to_string(i));
+    const Comparison comparison = expect_trilinear(grid, long_ray(grid, i), 1, Border::voxel_centres);
+    EXPECT_GE(comparison.points, 100U);
+    EXPECT_LE(comparison.bound, error_of_way(grid));
+    EXPECT_LE(comparison.bound, 8 * comparison.observed);
+  }
+  for (const Grid& values : {random_field(7, 0, 3), labels(7)}) {
+    Grid box{.size = {5, 6, 7}, .spacing = {1, 1, 1}, .values = values.values};
+    box.values.resize(std::size_t{5} * 6 * 7);
+    for (std::size_t i = 0; i < hard_rays().size(); ++i) {
+      SCOPED_TRACE("hard ray " + std::to_string(i));
+      expect_trilinear(box, hard_rays()[i], 1, Border::voxel_centres);
+      expect_tricubic(box, CubicKernel::bspline, hard_rays()[i], Border::voxel_centres);
+      expect_tricubic(box, CubicKernel::catmull_rom, hard_rays()[i], Border::voxel_centres);
     }
   }
 }

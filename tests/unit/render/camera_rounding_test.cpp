@@ -33,12 +33,14 @@ struct Ray50 {
   Real50 length;
 };
 
-Ray50 entered(const Vector50& origin, const Vector50& direction, const std::array<std::int64_t, 3>& size) {
+Ray50 entered(const Vector50& origin, const Vector50& direction, const std::array<std::int64_t, 3>& size,
+              Border border) {
   Real50 begin = 0;
   Real50 end = 1e30;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Real50 low = (Real50(-0.5) - origin[axis]) / direction[axis];
-    const Real50 high = (Real50(static_cast<double>(size[axis]) - 0.5) - origin[axis]) / direction[axis];
+    const Real50 beyond = border == Border::half_voxel ? 0.5 : 0;
+    const Real50 low = (-beyond - origin[axis]) / direction[axis];
+    const Real50 high = (size[axis] - 1 + beyond - origin[axis]) / direction[axis];
     begin = std::max(begin, std::min(low, high));
     end = std::min(end, std::max(low, high));
   }
@@ -47,7 +49,8 @@ Ray50 entered(const Vector50& origin, const Vector50& direction, const std::arra
 
 /// What the camera's numbers mean, in 50 digits: the formulas of CameraView; and the length of a voxel along the ray.
 std::pair<Ray50, Real50> meant(const Camera& camera, const std::array<double, 3>& spacing,
-                               const std::array<std::int64_t, 3>& size, std::int64_t column, std::int64_t row) {
+                               const std::array<std::int64_t, 3>& size, Border border, std::int64_t column,
+                               std::int64_t row) {
   const Vector50 eye = exactly(camera.eye);
   const Vector50 forward = unit(sum(exactly(camera.target), scaled(eye, -1)));
   const Vector50 right = unit(cross(forward, exactly(camera.up)));
@@ -68,7 +71,7 @@ std::pair<Ray50, Real50> meant(const Camera& camera, const std::array<double, 3>
   }
   const Real50 length =
       sqrt(dot(world, world)) / sqrt(dot(voxels, voxels)) / *std::min_element(spacing.begin(), spacing.end());
-  return {entered(origin, unit(voxels), size), length};
+  return {entered(origin, unit(voxels), size, border), length};
 }
 
 TEST(CameraRounding, CoversWhatBinary64DoesToRays) {
@@ -88,15 +91,16 @@ TEST(CameraRounding, CoversWhatBinary64DoesToRays) {
     else
       camera.projection = Perspective{2000 / far};
     const CameraView view(camera, spacing);
-    const CameraRounding rounding(camera, spacing, size);
+    const Border border = i % 4 < 2 ? Border::half_voxel : Border::voxel_centres;
+    const CameraRounding rounding(camera, spacing, size, border);
     const auto column = static_cast<std::int64_t>(i % 7);
     const auto row = static_cast<std::int64_t>(i % 5);
     const PixelRay pixel = view(column, row);
     const RayDisplacement found = rounding(column, row, pixel);
     ASSERT_FALSE(found.may_differ_in_all);
 
-    const auto [truth, voxel] = meant(camera, spacing, size, column, row);
-    const Ray50 rounded = entered(exactly(pixel.ray.origin), unit(exactly(pixel.ray.direction)), size);
+    const auto [truth, voxel] = meant(camera, spacing, size, border, column, row);
+    const Ray50 rounded = entered(exactly(pixel.ray.origin), unit(exactly(pixel.ray.direction)), size, border);
     if (truth.length == 0 || rounded.length == 0) continue;
     // A length at hand is so much along the ray that is meant.
     const Real50 along = pixel.length_unit / voxel;
@@ -143,8 +147,9 @@ TEST(CameraRounding, TellsWhereARayMayMissTheGrid) {
       const std::int64_t row = count / 2;
       const PixelRay pixel = CameraView(camera, spacing)(0, row);
       const RayDisplacement found = CameraRounding(camera, spacing, {7, 5, 9})(0, row, pixel);
-      const Real50 truth = meant(camera, spacing, {7, 5, 9}, 0, row).first.length;
-      const Real50 rounded = entered(exactly(pixel.ray.origin), unit(exactly(pixel.ray.direction)), {7, 5, 9}).length;
+      const Real50 truth = meant(camera, spacing, {7, 5, 9}, Border::half_voxel, 0, row).first.length;
+      const Real50 rounded =
+          entered(exactly(pixel.ray.origin), unit(exactly(pixel.ray.direction)), {7, 5, 9}, Border::half_voxel).length;
       EXPECT_TRUE(found.may_differ_in_all || found.of_length >= abs(truth - rounded)) << count << ", " << i;
       if (abs(truth - rounded) > 8) ++passing;
       camera.eye[0] = camera.target[0] = std::nextafter(camera.eye[0], -2);

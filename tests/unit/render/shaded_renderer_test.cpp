@@ -83,7 +83,7 @@ TEST(ShadedRenderer, ReferenceIsWithinItsRadiusOfCertifiedCells) {
       EXPECT_EQ(rendering.not_converged, 0);
       for (std::int64_t pixel = 0; pixel < 6; ++pixel) {
         const PixelRay ray = view(pixel % 3, pixel / 3);
-        const LitView lit(scene.grid, *scene.shading, ray);
+        const LitView lit(scene.grid, scene.border, *scene.shading, ray);
         const Chain<3> chain = chain_of(scene, ray);
         Eigen::Array4d truth = Eigen::Array4d::Zero();
         double radius = 0;
@@ -116,10 +116,11 @@ TEST(ShadedRenderer, ReferenceIsTheLimitOfPlainSums) {
   const GradientFilter& filter = catalogue::gradient_filters().front();
   for (const std::int64_t pixel : {8, 17, 25}) {
     const PixelRay ray = view(pixel % 7, pixel / 7);
-    const LitView lit(scene.grid, *scene.shading, ray);
+    const LitView lit(scene.grid, scene.border, *scene.shading, ray);
     const Illumination illumination(lit.lighting());
     const Chain<3> chain = chain_of(scene, ray);
-    const double entry = static_cast<double>(clip(scene.grid.size, ray.ray.origin, ray.ray.direction).begin);
+    const double entry =
+        static_cast<double>(clip(scene.grid.size, scene.border, ray.ray.origin, ray.ray.direction).begin);
     constexpr int steps = 100000;
     const double width = chain.length() / steps;
     Eigen::Array4d sum = Eigen::Array4d::Zero();

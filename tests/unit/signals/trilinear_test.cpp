@@ -36,8 +36,9 @@ Grid noise(std::array<std::int64_t, 3> size) {
 }
 
 /// Largest deviation from the eight voxels' value in 50 digits, over abscissae inside and at the ends of pieces.
-double value_error(const Grid& grid, const Ray& ray, const Chain<3>& chain, std::size_t stride = 1) {
-  const ExactRay exact = exact_ray(grid, ray);
+double value_error(const Grid& grid, const Ray& ray, const Chain<3>& chain, std::size_t stride = 1,
+                   Border border = Border::half_voxel) {
+  const ExactRay exact = exact_ray(grid, ray, border);
   double worst = 0;
   for (std::size_t i = 0; i < chain.pieces.size(); i += stride) {
     const auto& piece = chain.pieces[i];
@@ -60,12 +61,12 @@ void expect_continuous(const Chain<3>& chain) {
 }
 
 /// Everything a chain promises, against the chain made without a walk.
-void expect_exact(const Grid& grid, const Ray& ray) {
-  const Chain<3> chain = trace_trilinear(grid, ray);
-  const Chain<3, Real50> exact = exact_chain(grid, ray);
+void expect_exact(const Grid& grid, const Ray& ray, Border border = Border::half_voxel) {
+  const Chain<3> chain = trace_trilinear(grid, ray, border);
+  const Chain<3, Real50> exact = exact_chain(grid, ray, border);
   ASSERT_EQ(chain.pieces.size(), exact.pieces.size());
   EXPECT_NEAR(chain.length(), to_double(exact.end), epsilon * to_double(exact.end));
-  EXPECT_LE(value_error(grid, ray, chain), few_ulps);
+  EXPECT_LE(value_error(grid, ray, chain, 1, border), few_ulps);
   for (std::size_t i = 0; i < chain.pieces.size(); ++i) {
     const auto& piece = chain.pieces[i];
     EXPECT_LE(abs(in_50_digits(piece.start) - exact.pieces[i].start), ldexp(exact.end, -95));
@@ -95,6 +96,45 @@ TEST(Trilinear, DegenerateRaysAreExact) {
     SCOPED_TRACE("ray " + std::to_string(i));
     expect_exact(grid, rays[i]);
   }
+}
+
+TEST(Trilinear, RaysThatEndAtVoxelCentresAreExact) {
+  const Grid box = noise({5, 6, 7});
+  const std::vector<Ray> rays = degenerate_rays();
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    SCOPED_TRACE("degenerate ray " + std::to_string(i));
+    expect_exact(box, rays[i], Border::voxel_centres);
+  }
+  const Grid grid = noise({13, 9, 11});
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    SCOPED_TRACE("random ray " + std::to_string(i));
+    Ray ray = random_ray(grid, 6, 1, i);
+    for (std::size_t axis = 0; axis < 3; ++axis) ray.origin[axis] -= 30 * ray.direction[axis];
+    ray.length = std::numeric_limits<double>::infinity();
+    expect_exact(grid, ray, Border::voxel_centres);
+    // Half a voxel less on every side: no piece is in a clamped half.
+    const auto centres = exact_ray(grid, ray, Border::voxel_centres);
+    for (const Real50& t : {Real50(0), centres.length})
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_GE(centres.point(t)[axis], -1e-40);
+        EXPECT_LE(centres.point(t)[axis], Real50(grid.size[axis] - 1) + 1e-40);
+      }
+    EXPECT_LT(trace_trilinear(grid, ray, Border::voxel_centres).length(), trace_trilinear(grid, ray).length());
+  }
+}
+
+TEST(Trilinear, RowOfVoxelsEndsAtItsCentres) {
+  const Grid row{.size = {4, 1, 1}, .spacing = {1, 1, 1}, .values = {0.5, 0.25, 1, 0}};
+  const Chain<3> chain =
+      trace_trilinear(row, {{-3, 0, 0}, {1, 0, 0}, std::numeric_limits<double>::infinity()}, Border::voxel_centres);
+  ASSERT_EQ(chain.pieces.size(), 3);
+  EXPECT_EQ(chain.length(), 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(chain.pieces[i].polynomial.coefficients.front(), row.values[i]);
+    EXPECT_EQ(chain.pieces[i].polynomial.coefficients.back(), row.values[i + 1]);
+  }
+  // Beside its one line of centres there is nothing.
+  EXPECT_TRUE(trace_trilinear(row, {{-3, 0, 1e-12}, {1, 0, 0}, 9}, Border::voxel_centres).pieces.empty());
 }
 
 TEST(Trilinear, RayThatMissesIsEmpty) {

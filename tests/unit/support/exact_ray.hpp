@@ -12,7 +12,7 @@
 
 namespace raytruth::testing_support {
 
-/// The ray's points in 50 digits; t = 0 where it enters the clamped field.
+/// The ray's points in 50 digits; t = 0 where it enters the volume.
 struct ExactRay {
   std::array<Real50, 3> start;
   std::array<Real50, 3> direction;
@@ -24,12 +24,14 @@ struct ExactRay {
 };
 
 /// The ray by clipping against the six faces, with `unit` for the ray's direction.
-inline ExactRay exact_ray(const Grid& grid, const Ray& ray, const std::array<Real50, 3>& unit) {
+inline ExactRay exact_ray(const Grid& grid, const Ray& ray, const std::array<Real50, 3>& unit,
+                          Border border = Border::half_voxel) {
   Real50 begin = 0;
   Real50 end("1e100");
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Real50 low("-0.5");
-    const Real50 high = Real50(grid.size[axis]) - Real50("0.5");
+    const Real50 beyond(border == Border::half_voxel ? "0.5" : "0");
+    const Real50 low = -beyond;
+    const Real50 high = Real50(grid.size[axis] - 1) + beyond;
     const Real50 origin(ray.origin[axis]);
     if (unit[axis] == 0) {
       if (origin < low || origin > high) end = -1;
@@ -50,23 +52,23 @@ inline ExactRay exact_ray(const Grid& grid, const Ray& ray, const std::array<Rea
 }
 
 /// The ray at the rounded unit direction.
-inline ExactRay exact_ray(const Grid& grid, const Ray& ray) {
+inline ExactRay exact_ray(const Grid& grid, const Ray& ray, Border border = Border::half_voxel) {
   const auto unit = unit_direction(ray.direction);
-  return exact_ray(grid, ray, {unit[0], unit[1], unit[2]});
+  return exact_ray(grid, ray, {unit[0], unit[1], unit[2]}, border);
 }
 
 /// The ray at the exactly normalised direction.
-inline ExactRay exactly_directed_ray(const Grid& grid, const Ray& ray) {
+inline ExactRay exactly_directed_ray(const Grid& grid, const Ray& ray, Border border = Border::half_voxel) {
   std::array<Real50, 3> unit{ray.direction[0], ray.direction[1], ray.direction[2]};
   const Real50 norm = sqrt(unit[0] * unit[0] + unit[1] * unit[1] + unit[2] * unit[2]);
   for (Real50& component : unit) component /= norm;
-  return exact_ray(grid, ray, unit);
+  return exact_ray(grid, ray, unit, border);
 }
 
 /// The chain of cubics of a trilinear ray without any walk: all crossings of all borders, sorted; in each interval the
 /// cubic through the values at four points.
-inline Chain<3, Real50> exact_chain(const Grid& grid, const Ray& ray) {
-  const ExactRay exact = exact_ray(grid, ray);
+inline Chain<3, Real50> exact_chain(const Grid& grid, const Ray& ray, Border border = Border::half_voxel) {
+  const ExactRay exact = exact_ray(grid, ray, border);
   Chain<3, Real50> chain;
   if (!(exact.length > 0)) return chain;
   std::vector<Real50> breaks{0, exact.length};

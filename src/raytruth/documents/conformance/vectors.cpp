@@ -9,6 +9,8 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
+#include <set>
 #include <utility>
 
 namespace raytruth {
@@ -127,8 +129,16 @@ std::vector<TransferPoint> random_tent(Draws& draws, double s, double half_width
 
 /// What a vector asks, but for its convention.
 struct Problem {
+  Problem(Signal the_signal, std::vector<TransferPoint> points)
+      : signal(std::move(the_signal)), transfer(std::move(points)) {}
+  Problem(Signal the_signal, PiecewiseLinear the_transfer)
+      : signal(std::move(the_signal)), transfer(std::move(the_transfer)) {}
+  Problem(Signal the_signal, SeparateLists the_lists)
+      : signal(std::move(the_signal)), transfer(joined(the_lists)), lists(std::move(the_lists)) {}
+
   Signal signal;
-  std::vector<TransferPoint> points;
+  PiecewiseLinear transfer;
+  std::optional<SeparateLists> lists;
 };
 
 /// Which vector of its level is being made, from 0 on; slabs count from 0 on too.
@@ -266,11 +276,90 @@ Problem grazing(Draws& draws, const Which& which) {
            random_point(draws, 1, {16, 24}, 0.25)}};
 }
 
+/// What a renderer makes of a row of samples: a signal that is linear between them, a step of `random_length` / 4
+/// apart. A slab lies between two of them.
+Signal random_samples(Draws& draws, bool is_slab, Range first, Range last) {
+  const auto value_in = [&](Range range) { return draws.whole(range.low, range.high) * signal_unit; };
+  const double step = random_length(draws) / 4;
+  const int pieces = is_slab ? 1 : draws.whole(6, 10);
+  Signal signal;
+  double value = value_in(first);
+  for (int piece = 1; piece <= pieces; ++piece) {
+    const double next = value_in(piece == pieces ? last : any_value);
+    signal.append({value, next}, step);
+    value = next;
+  }
+  return signal;
+}
+
+Problem linear_ray(Draws& draws, const Which& which) {
+  Signal signal = random_samples(draws, which.is_slab, any_value, any_value);
+  std::vector<TransferPoint> points;
+  for (int i = 0; i <= 8; ++i) points.push_back(random_point(draws, i / 8.0, {0, 16}, 0.125));
+  return {std::move(signal), std::move(points)};
+}
+
+/// Scalars from `first` on to 1 at most, in distances that are powers of two, so that what is linear between two of
+/// them has few bits in between too.
+std::vector<double> random_scalars(Draws& draws, double first, Range exponents_of_distances) {
+  std::vector<double> scalars{first};
+  for (;;) {
+    const double next =
+        scalars.back() + std::ldexp(1, draws.whole(exponents_of_distances.low, exponents_of_distances.high));
+    if (next > 1) return scalars;
+    scalars.push_back(next);
+  }
+}
+
+Problem separate_lists(Draws& draws, const Which& which) {
+  Signal signal = random_samples(draws, which.is_slab, {0, 12}, {53, 65});
+  const bool is_opacity = which.index % 2 == 1;
+  SeparateLists lists{.colors = {}, .densities = {}, .unit_length = is_opacity ? random_length(draws) : 0.0};
+  for (const double s : random_scalars(draws, 0, {-3, -1})) lists.colors.push_back({s, random_color(draws)});
+  // High and low in turn: a program that drops a point, or moves it to one of the other list, is far off.
+  const double unit = is_opacity ? 1.0 / 64 : 1.0 / 16;
+  const auto density = [&](std::size_t i) { return (i % 2 == 0 ? draws.whole(0, 4) : draws.whole(32, 60)) * unit; };
+  std::vector<double> scalars = random_scalars(draws, (2 * draws.whole(0, 3) + 1) / 32.0, {-4, -3});
+  if (which.index % 3 == 2) {
+    const auto jump = scalars.begin() + draws.whole(1, static_cast<int>(scalars.size()) - 1);
+    scalars.insert(jump, *jump);
+  }
+  for (std::size_t i = 0; i < scalars.size(); ++i) lists.densities.push_back({scalars[i], density(i)});
+  return {std::move(signal), std::move(lists)};
+}
+
+Problem opacity_linear(Draws& draws, const Which& which) {
+  Signal signal = random_samples(draws, which.is_slab, {0, 12}, {53, 65});
+  std::vector<OpacityPoint> points;
+  for (int i = 0; i <= 8; ++i)
+    points.push_back({i / 8.0, draws.whole(i % 2 == 0 ? 0 : 24, i % 2 == 0 ? 16 : 63) / 64.0, random_color(draws)});
+  const double unit_length = random_length(draws);
+  if (which.index % 3 != 0) points[5].opacity = 1;
+  if (which.index % 3 == 2) points[6].opacity = 1;  // the ray ends between the two
+  return {std::move(signal), from_opacity(points, unit_length)};
+}
+
+Problem isoslab(Draws& draws, const Which& which) {
+  Signal signal = random_samples(draws, which.is_slab, {0, 12}, {53, 65});
+  const Optics nothing{};
+  std::vector<TransferPoint> points{{0, nothing}};
+  const bool are_two = which.index % 3 == 2;
+  for (const Range low : are_two ? std::vector<Range>{{300, 420}, {580, 700}} : std::vector<Range>{{300, 700}}) {
+    const double from = draws.whole(low.low, low.high) / 1024.0;
+    const double width = std::ldexp(1, draws.whole(-10, -4));
+    const Optics matter = random_point(draws, from, {1, 8}, 0.25 / width).optics;
+    points.insert(points.end(), {{from, nothing}, {from, matter}, {from + width, matter}, {from + width, nothing}});
+  }
+  points.push_back({1, nothing});
+  return {std::move(signal), std::move(points)};
+}
+
 /// How the vectors of a level are made.
 struct Recipe {
   VectorLevel level;
   Problem (*make)(Draws& draws, const Which& which) = nullptr;
   int slabs = 4;
+  VectorForm form = VectorForm::first;  ///< that knows it first
 };
 
 constexpr int rays_per_level = 12;
@@ -302,14 +391,65 @@ constexpr std::array recipes{
          "at one moment the signal touches a kink of the transfer function, with a contact of order 2 to 9, or a jump "
          "with one of order 2, or it passes a jump, or falls short of it, by 2^-20; slabs begin or end on a jump"},
         grazing},
+    Recipe{{"linear_rays",
+            "nothing but the integral: between equidistant places the signal is linear, as a renderer takes it between "
+            "its samples, so one that samples there has no error of its signal"},
+           linear_ray,
+           4,
+           VectorForm::second},
+    Recipe{{"separate_lists",
+            "colours and extinctions, or opacities, are lists of their own, with points at scalars of their own: a "
+            "program that looks at the points of one list only, or moves them, is far off"},
+           separate_lists,
+           4,
+           VectorForm::second},
+    Recipe{{"opacity_linear",
+            "opacity of a unit of length, not extinction, is linear between points, up to 1: at single scalars, where "
+            "the depth is finite, or up to the next point, where the ray ends"},
+           opacity_linear,
+           4,
+           VectorForm::second},
+    Recipe{{"isoslab",
+            "one or two slabs of constant matter between isovalues, 2^-10 to 2^-4 apart, and nothing outside: where a "
+            "ray enters them decides everything"},
+           isoslab,
+           4,
+           VectorForm::second},
 };
+
+bool has(VectorForm form, const Recipe& recipe) {
+  return form == VectorForm::second || recipe.form == VectorForm::first;
+}
+
+Json color_of(const Vector3<double>& color) { return {color[0], color[1], color[2]}; }
 
 Json points_json(const PiecewiseLinear& transfer) {
   Json points = Json::array();
-  for (const auto& [s, optics] : transfer.points())
-    points.push_back(
-        {{"s", s}, {"extinction", optics.extinction}, {"color", {optics.color[0], optics.color[1], optics.color[2]}}});
-  return {{"points", std::move(points)}};
+  for (std::size_t i = 0; i < transfer.points().size(); ++i) {
+    const auto& [s, optics] = transfer.points()[i];
+    Json point{{"s", s}};
+    if (transfer.is_linear_in_opacity())
+      point["opacity"] = transfer.opacities()[i];
+    else
+      point["extinction"] = optics.extinction;
+    point["color"] = color_of(optics.color);
+    points.push_back(std::move(point));
+  }
+  Json result{{"points", std::move(points)}};
+  if (transfer.is_linear_in_opacity()) result["unit_length"] = transfer.unit_length();
+  return result;
+}
+
+Json lists_json(const SeparateLists& lists) {
+  Json colors = Json::array();
+  for (const auto& [s, color] : lists.colors) colors.push_back({{"s", s}, {"color", color_of(color)}});
+  Json densities = Json::array();
+  const bool is_opacity = lists.unit_length != 0;
+  const char* const name = is_opacity ? "opacity" : "extinction";
+  for (const auto& [s, value] : lists.densities) densities.push_back({{"s", s}, {name, value}});
+  Json result{{"color", std::move(colors)}, {name, std::move(densities)}};
+  if (is_opacity) result["unit_length"] = lists.unit_length;
+  return result;
 }
 
 Json vector_json(const ConformanceVector& vector) {
@@ -325,6 +465,7 @@ Json vector_json(const ConformanceVector& vector) {
         {"kind", "piecewise_polynomial"}, {"breaks", vector.breaks}, {"coefficients", vector.coefficients}};
   }
   json["transfer_function"] = points_json(vector.transfer);
+  if (vector.lists) json["separate_lists"] = lists_json(*vector.lists);
   const Certified truth = truth_of(vector);
   json["reference"] = {{"color", {truth.color[0], truth.color[1], truth.color[2]}},
                        {"opacity", truth.opacity},
@@ -334,15 +475,49 @@ Json vector_json(const ConformanceVector& vector) {
 
 }  // namespace
 
-std::vector<VectorLevel> vector_levels() {
+std::vector<VectorLevel> vector_levels(VectorForm form) {
   std::vector<VectorLevel> levels;
-  for (const Recipe& recipe : recipes) levels.push_back(recipe.level);
+  for (const Recipe& recipe : recipes)
+    if (has(form, recipe)) levels.push_back(recipe.level);
   return levels;
 }
 
-std::vector<ConformanceVector> conformance_vectors(std::uint64_t seed) {
+PiecewiseLinear joined(const SeparateLists& lists) {
+  std::vector<TransferPoint> of_colors;
+  std::vector<TransferPoint> of_densities;
+  std::set<double> scalars;
+  for (const auto& [s, color] : lists.colors) {
+    of_colors.push_back({s, {0, color}});
+    scalars.insert(s);
+  }
+  for (const auto& [s, value] : lists.densities) {
+    of_densities.push_back({s, {value}});
+    scalars.insert(s);
+  }
+  const PiecewiseLinear colors(std::move(of_colors));
+  const PiecewiseLinear densities(std::move(of_densities));
+  std::vector<TransferPoint> points;
+  std::vector<OpacityPoint> opacity_points;
+  const auto add = [&](double s, double density, const Vector3<double>& color) {
+    points.push_back({s, {density, color}});
+    opacity_points.push_back({s, density, color});
+  };
+  for (const double s : scalars) {
+    const double below = densities.before(s).extinction;
+    const double here = densities.at(s).extinction;
+    const Vector3<double> color_below = colors.before(s).color;
+    const Vector3<double> color_here = colors.at(s).color;
+    if (below != here || (color_below != color_here).any()) add(s, below, color_below);
+    add(s, here, color_here);
+  }
+  if (lists.unit_length == 0) return PiecewiseLinear(std::move(points));
+  return from_opacity(opacity_points, lists.unit_length);
+}
+
+std::vector<ConformanceVector> conformance_vectors(std::uint64_t seed, VectorForm form) {
   std::vector<ConformanceVector> vectors;
-  for (const Recipe& recipe : recipes)
+  for (const Recipe& recipe : recipes) {
+    if (!has(form, recipe)) continue;
     for (int i = 0; i < rays_per_level + recipe.slabs; ++i) {
       const bool is_slab = i >= rays_per_level;
       const int index = is_slab ? i - rays_per_level : i;
@@ -352,8 +527,10 @@ std::vector<ConformanceVector> conformance_vectors(std::uint64_t seed) {
       Problem problem = recipe.make(draws, {index, is_slab, emission});
       vectors.push_back({fmt::format("{}_{}_{:02}", recipe.level.name, is_slab ? "slab" : "ray", index + 1),
                          recipe.level.name, is_slab, emission, std::move(problem.signal.breaks),
-                         std::move(problem.signal.coefficients), PiecewiseLinear(std::move(problem.points))});
+                         std::move(problem.signal.coefficients), std::move(problem.transfer),
+                         std::move(problem.lists)});
     }
+  }
   return vectors;
 }
 
@@ -365,13 +542,16 @@ Certified truth_of(const ConformanceVector& vector) {
   return arb_integral(signal_of(vector), vector.transfer, vector.emission);
 }
 
-Json vectors_json(std::uint64_t seed) {
+Json vectors_json(std::uint64_t seed, VectorForm form) {
   Json levels = Json::array();
-  for (const VectorLevel& level : vector_levels())
+  for (const VectorLevel& level : vector_levels(form))
     levels.push_back({{"level", level.name}, {"difficulty", levels.size() + 1}, {"why", level.why}});
   Json vectors = Json::array();
-  for (const ConformanceVector& vector : conformance_vectors(seed)) vectors.push_back(vector_json(vector));
-  return {{"raytruth", "vectors/1"}, {"seed", seed}, {"levels", std::move(levels)}, {"vectors", std::move(vectors)}};
+  for (const ConformanceVector& vector : conformance_vectors(seed, form)) vectors.push_back(vector_json(vector));
+  return {{"raytruth", vector_form_names[static_cast<std::size_t>(form)]},
+          {"seed", seed},
+          {"levels", std::move(levels)},
+          {"vectors", std::move(vectors)}};
 }
 
 }  // namespace raytruth

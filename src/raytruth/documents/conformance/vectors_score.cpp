@@ -15,6 +15,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <sstream>
@@ -31,25 +32,50 @@ constexpr std::array<std::string_view, 5> header{"id", "r", "g", "b", "opacity"}
 bool is_finite(const Answer& answer) { return answer.color.isFinite().all() && std::isfinite(answer.opacity); }
 
 double digits_of(double error, double scale, double radius) {
+  if (!std::isfinite(error)) return 0;
   if (!(scale > 0)) return error <= radius ? -std::log10(unit_roundoff) : 0;
   return std::max(0.0, -std::log10(std::max({error, radius, unit_roundoff * scale}) / scale));
 }
 
-LevelScore score_level(std::string level, const std::vector<const ScoredVector*>& vectors) {
+/// What the answers come to in one respect: which digits of an AnswerScore, and which error.
+template <class Digits, class Error>
+PartScore score_part(const std::vector<AnswerScore>& answers, Digits digits_of_answer, Error error_of_answer) {
+  PartScore part;
   std::vector<double> digits;
-  for (const ScoredVector* vector : vectors)
-    digits.push_back(vector->answer ? digits_correct(*vector->answer, vector->truth) : 0);
-  const auto worst = std::min_element(digits.begin(), digits.end()) - digits.begin();
-  const auto answered = std::count_if(vectors.begin(), vectors.end(),
-                                      [](const ScoredVector* vector) { return vector->answer.has_value(); });
-  std::vector<double> sorted = digits;
-  std::sort(sorted.begin(), sorted.end());
-  return {.level = std::move(level),
-          .cases = static_cast<std::int64_t>(vectors.size()),
-          .answered = answered,
-          .digits_min = sorted.front(),
-          .digits_median = quantile(sorted, 0.5),
-          .worst = vectors[static_cast<std::size_t>(worst)]->id};
+  for (const AnswerScore& answer : answers) {
+    digits.push_back(std::invoke(digits_of_answer, answer));
+    const double error = std::invoke(error_of_answer, answer);
+    if (std::isfinite(error)) part.error_max = std::max(part.error_max.value_or(0), error);
+  }
+  if (digits.empty()) return part;
+  std::sort(digits.begin(), digits.end());
+  part.digits_min = digits.front();
+  part.digits_median = quantile(digits, 0.5);
+  return part;
+}
+
+LevelScore score_level(std::string level, const std::vector<const ScoredVector*>& vectors) {
+  LevelScore result;
+  result.level = std::move(level);
+  result.cases = static_cast<std::int64_t>(vectors.size());
+  std::vector<AnswerScore> answers;
+  double fewest = std::numeric_limits<double>::infinity();
+  for (const ScoredVector* vector : vectors) {
+    if (!vector->answer) continue;
+    if (!is_finite(*vector->answer)) ++result.not_finite;
+    answers.push_back(score_of(*vector->answer, vector->truth));
+    if (const double digits = answers.back().digits(); digits < fewest) {
+      fewest = digits;
+      result.worst = vector->id;
+    }
+  }
+  result.answered = static_cast<std::int64_t>(answers.size());
+  result.color = score_part(answers, &AnswerScore::color_digits, &AnswerScore::color_error);
+  result.opacity = score_part(answers, &AnswerScore::opacity_digits, &AnswerScore::opacity_error);
+  const PartScore both = score_part(answers, &AnswerScore::digits, &AnswerScore::error);
+  result.digits_min = both.digits_min;
+  result.digits_median = both.digits_median;
+  return result;
 }
 
 /// What spreadsheets put between fields, and in numbers.
@@ -134,12 +160,14 @@ std::vector<Line> lines_of(const std::string& path) {
 
 }  // namespace
 
-double digits_correct(const Answer& answer, const Certified& truth) {
-  if (!is_finite(answer)) return 0;
-  const double color_error = (answer.color - truth.color).abs().maxCoeff();
-  const double opacity_error = std::abs(answer.opacity - truth.opacity);
-  return std::min(digits_of(color_error, truth.color.maxCoeff(), truth.radius),
-                  digits_of(opacity_error, truth.opacity, truth.radius));
+AnswerScore score_of(const Answer& answer, const Certified& truth) {
+  AnswerScore score{.color_error = answer.color.isFinite().all() ? (answer.color - truth.color).abs().maxCoeff()
+                                                                 : std::numeric_limits<double>::infinity(),
+                    .opacity_error = std::isfinite(answer.opacity) ? std::abs(answer.opacity - truth.opacity)
+                                                                   : std::numeric_limits<double>::infinity()};
+  score.color_digits = digits_of(score.color_error, truth.color.maxCoeff(), truth.radius);
+  score.opacity_digits = digits_of(score.opacity_error, truth.opacity, truth.radius);
+  return score;
 }
 
 std::vector<LevelScore> score(const std::vector<ScoredVector>& vectors) {

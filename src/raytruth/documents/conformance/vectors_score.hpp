@@ -2,7 +2,9 @@
 
 #include "raytruth/core/vector3.hpp"
 #include "raytruth/reference/certified.hpp"
+#include "raytruth/transfer/emission.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -17,33 +19,55 @@ struct Answer {
   double opacity = 0;
 };
 
-/// How many decimal digits of an answer are right: -log10(error / scale), of colour and opacity the lesser one. The
-/// colour's error is its largest channel's, its scale the largest channel of the certified colour; the opacity's scale
-/// is the certified opacity. Errors below the certified radius, or below 2^-53 of the scale, count as that much, which
-/// caps the digits at 15.95; an error larger than the scale has none. Where the scale is 0 an error within the radius
-/// has all digits, any other none. An answer that is not finite has none.
-double digits_correct(const Answer& answer, const Certified& truth);
+/// How far an answer is from the certified one. Decimal digits that are right: -log10(error / scale). The colour's
+/// error is its largest channel's, its scale the largest channel of the certified colour; the opacity's scale is the
+/// certified opacity. Errors below the certified radius, or below 2^-53 of the scale, count as that much, which caps
+/// the digits at 15.95; an error larger than the scale has none. Where the scale is 0 an error within the radius has
+/// all digits, any other none. What is not finite has no digits.
+struct AnswerScore {
+  double color_error = 0;  ///< absolute; not finite where the answer is not, as the next one
+  double opacity_error = 0;
+  double color_digits = 0;
+  double opacity_digits = 0;
+
+  // Of colour and opacity the worse one.
+  [[nodiscard]] double digits() const { return std::min(color_digits, opacity_digits); }
+  [[nodiscard]] double error() const { return std::max(color_error, opacity_error); }
+};
+
+AnswerScore score_of(const Answer& answer, const Certified& truth);
 
 /// One vector, and what was answered.
 struct ScoredVector {
   std::string id;
   std::string level;
   Certified truth;
-  std::optional<Answer> answer;  ///< no answer has no digits
+  std::optional<Answer> answer;  ///< none: it counts in no digits
+  Emission emission = Emission::associated;
 };
 
-/// How good the answers of a level are.
+/// How good the colours, or the opacities, of a level are.
+struct PartScore {
+  std::optional<double> digits_min;
+  std::optional<double> digits_median;
+  std::optional<double> error_max;  ///< absolute, of what is finite
+};
+
+/// How good the answers of a level are: over the vectors that were answered, so nothing where none was.
 struct LevelScore {
   std::string level;
   std::int64_t cases = 0;
   std::int64_t answered = 0;
-  double digits_min = 0;
-  double digits_median = 0;
-  std::string worst;  ///< id of the vector with the fewest digits, the first of them
+  std::int64_t not_finite = 0;  ///< of the answers: they have no digits, and no error
+  std::optional<double> digits_min;
+  std::optional<double> digits_median;
+  std::optional<std::string> worst;  ///< id of the vector with the fewest digits, the first of them
+  PartScore color;
+  PartScore opacity;
 };
 
-/// A score for every level, in the order in which levels occur, and one more for all of them together ("all").
-/// There must be vectors.
+/// A score for every level, over what was answered, in the order in which levels occur, and one more for all of them
+/// together ("all"). There must be vectors.
 std::vector<LevelScore> score(const std::vector<ScoredVector>& vectors);
 
 /// Reads answers as CSV (RFC 4180), with the header id,r,g,b,opacity. What spreadsheets make of it is read too, with a

@@ -181,6 +181,9 @@ BallStretch PointsCut::stretch_in(std::size_t interval, const BallPiece& piece, 
                       .weight = 0.0,
                       .color = balls(a.color),
                       .color_change = {}};
+  // A constant opacity's extinction is a logarithm, which the transfer function holds rounded to binary64.
+  if (unit_length_ > 0 && !intervals_[interval].is_opaque())
+    stretch.extinction = Polynomial(-log(Ball(1.0) - Ball(intervals_[interval].opacity_begin)) / Ball(unit_length_));
   const bool is_constant = a.extinction == b.extinction && (a.color == b.color).all();
   if (is_constant) return stretch;
   const Ball width = Ball(points_[interval]) - Ball(points_[interval - 1]);

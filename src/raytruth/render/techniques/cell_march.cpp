@@ -61,8 +61,9 @@ Bernstein<3> cell_cubic(const Number* corner, const std::array<std::int64_t, 2>&
 
 }  // namespace
 
-CellMarch::CellMarch(const Grid& grid, const PiecewiseLinear& transfer, Emission emission, double opaque)
+CellMarch::CellMarch(const Grid& grid, Border border, const PiecewiseLinear& transfer, Emission emission, double opaque)
     : size_(grid.size),
+      border_(border),
       voxels_(are_binary32(grid) ? Voxels(std::in_place_type<PaddedVoxels<float>>, grid)
                                  : Voxels(std::in_place_type<PaddedVoxels<double>>, grid)),
       intervals_(transfer),
@@ -246,7 +247,7 @@ void CellRay::composite(Eigen::Array4d& sum) {
 
 Eigen::Array4d CellRay::operator()(const PixelRay& pixel, const std::optional<std::span<const RayPart>>& parts) {
   Eigen::Array4d sum = Eigen::Array4d::Zero();
-  const Span inside = clip(march_.size(), pixel.ray.origin, pixel.ray.direction);
+  const Span inside = clip(march_.size(), march_.border(), pixel.ray.origin, pixel.ray.direction);
   if (!(inside.begin < inside.end)) return sum;
   const auto entry = static_cast<double>(inside.begin);
   const RayPart everything{0, static_cast<double>(inside.end - inside.begin)};
@@ -270,16 +271,16 @@ namespace {
 PixelRendererFactory prepare(const PreparedScene& prepared) {
   const Scene& scene = prepared.scene;
   const auto& field = std::get<TrilinearField>(prepared.field);
-  const auto march = std::make_shared<const CellMarch>(scene.grid, scene.transfer, scene.emission, scene.opaque);
+  const auto march =
+      std::make_shared<const CellMarch>(scene.grid, scene.border, scene.transfer, scene.emission, scene.opaque);
   auto blocks = asked_blocks(scene, field);
   if (!blocks)
     blocks = std::make_shared<const OccupiedBlocks>(
         certain_blocks(field, ClearScalars(scene.transfer, scene.emission), prepared.placing_error));
   return [&scene, march, blocks]() -> PixelRenderer {
     return [march, blocks, ray = CellRay(*march, scene.transfer, scene.emission),
-            parts_of = PartsOfRay(scene.grid.size, blocks.get())](const PixelRay& pixel) mutable -> PixelLight {
-      return {ray(pixel, parts_of(pixel.ray))};
-    };
+            parts_of = PartsOfRay(scene.grid.size, scene.border, blocks.get())](
+               const PixelRay& pixel) mutable -> PixelLight { return {ray(pixel, parts_of(pixel.ray))}; };
   };
 }
 

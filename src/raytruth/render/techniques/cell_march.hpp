@@ -8,6 +8,7 @@
 #include "raytruth/render/camera.hpp"
 #include "raytruth/render/techniques/padded_voxels.hpp"
 #include "raytruth/schemes/omissions.hpp"
+#include "raytruth/signals/border.hpp"
 #include "raytruth/skipping/clear_scalars.hpp"
 #include "raytruth/transfer/emission.hpp"
 #include "raytruth/volume/grid.hpp"
@@ -37,9 +38,10 @@ class CellMarch {
   using Voxels = std::variant<PaddedVoxels<float>, PaddedVoxels<double>>;
 
   /// Throws InputError for voxels beyond 2^500, and as RayIntegral does.
-  CellMarch(const Grid& grid, const PiecewiseLinear& transfer, Emission emission, double opaque);
+  CellMarch(const Grid& grid, Border border, const PiecewiseLinear& transfer, Emission emission, double opaque);
 
   [[nodiscard]] const std::array<std::int64_t, 3>& size() const { return size_; }
+  [[nodiscard]] Border border() const { return border_; }
   [[nodiscard]] const Voxels& voxels() const { return voxels_; }
   [[nodiscard]] const LinearIntervals& intervals() const { return intervals_; }
   [[nodiscard]] Emission emission() const { return emission_; }
@@ -55,6 +57,7 @@ class CellMarch {
   void find_clear_cells(const PaddedVoxels<Number>& voxels, const ClearScalars& clear);
 
   std::array<std::int64_t, 3> size_;
+  Border border_;
   Voxels voxels_;
   LinearIntervals intervals_;
   Emission emission_;

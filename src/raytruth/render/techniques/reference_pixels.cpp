@@ -26,7 +26,7 @@ class ReferencePixels {
         placing_error_(prepared.placing_error),
         tolerance_(prepared.scene.covers_camera ? tolerance_with_camera : tolerance_of_rays),
         blocks_(std::move(blocks)),
-        parts_of_(field.grid().size, blocks_.get()),
+        parts_of_(field.grid().size, field.border(), blocks_.get()),
         clear_(prepared.scene.transfer, prepared.scene.emission),
         margin_(margin_of(field.grid(), prepared.placing_error)),
         integrate_(prepared.scene.transfer, prepared.scene.emission) {}
@@ -61,7 +61,7 @@ class ReferencePixels {
            displacement.largest(longest) <= placing_error_;
   }
   [[nodiscard]] bool enters(const Ray& ray) const {
-    const Span inside = clip(field_.grid().size, ray.origin, ray.direction);
+    const Span inside = clip(field_.grid().size, field_.border(), ray.origin, ray.direction);
     return inside.begin < inside.end;
   }
   void take_out_clear_pieces(SignalError& error) {

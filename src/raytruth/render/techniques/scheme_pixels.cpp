@@ -19,7 +19,8 @@ PixelRendererFactory prepare(const PreparedScene& prepared) {
   return std::visit(
       [&]<class Field>(const Field& field) -> PixelRendererFactory {
         return [&field, &scene, &scheme, blocks = asked_blocks(scene, field)]() -> PixelRenderer {
-          return [&field, &scene, &scheme, blocks, parts_of = PartsOfRay(field.grid().size, blocks.get()),
+          return [&field, &scene, &scheme, blocks,
+                  parts_of = PartsOfRay(field.grid().size, field.border(), blocks.get()),
                   chain = Chain<Field::degree>(), samples = Samples<double>(),
                   integrate =
                       SchemeIntegral(scene.transfer, scene.emission)](const PixelRay& pixel) mutable -> PixelLight {

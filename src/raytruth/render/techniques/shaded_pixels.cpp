@@ -15,7 +15,7 @@ PixelRendererFactory prepare_scheme(const PreparedScene& prepared) {
   return std::visit(
       [&]<class Field>(const Field& field) -> PixelRendererFactory {
         return [&field, &scene, blocks = asked_blocks(scene, field)]() -> PixelRenderer {
-          return [&field, &scene, blocks, parts_of = PartsOfRay(field.grid().size, blocks.get()),
+          return [&field, &scene, blocks, parts_of = PartsOfRay(field.grid().size, field.border(), blocks.get()),
                   chain = Chain<Field::degree>(), samples = Samples<double>(),
                   shaded = ShadedRay<Field::degree>(scene)](const PixelRay& pixel) mutable -> PixelLight {
             const auto parts = parts_of(pixel.ray, pixel.length_unit);
@@ -38,14 +38,14 @@ PixelRendererFactory prepare_reference(const PreparedScene& prepared) {
         const auto blocks = std::make_shared<const OccupiedBlocks>(
             certain_blocks(field, ClearScalars(scene.transfer, scene.emission), prepared.placing_error));
         return [&field, &scene, blocks]() -> PixelRenderer {
-          return
-              [&field, blocks, parts_of = PartsOfRay(field.grid().size, blocks.get()), chain = Chain<Field::degree>(),
-               shaded = ShadedRay<Field::degree>(scene)](const PixelRay& pixel) mutable -> PixelLight {
-                if (parts_of(pixel.ray)->empty()) return {};
-                field.trace(pixel.ray, chain);
-                scale_lengths(chain, pixel.length_unit);
-                return shaded(pixel, chain, {}, {});
-              };
+          return [&field, blocks, parts_of = PartsOfRay(field.grid().size, field.border(), blocks.get()),
+                  chain = Chain<Field::degree>(),
+                  shaded = ShadedRay<Field::degree>(scene)](const PixelRay& pixel) mutable -> PixelLight {
+            if (parts_of(pixel.ray)->empty()) return {};
+            field.trace(pixel.ray, chain);
+            scale_lengths(chain, pixel.length_unit);
+            return shaded(pixel, chain, {}, {});
+          };
         };
       },
       prepared.field);

@@ -84,11 +84,11 @@ bool can_be_lit(const IntegralScheme& scheme) {
 
 }  // namespace
 
-LitView::LitView(const Grid& grid, const SceneShading& shading, const PixelRay& pixel)
+LitView::LitView(const Grid& grid, Border border, const SceneShading& shading, const PixelRay& pixel)
     : grid_(grid),
       pixel_(pixel),
       sign_(shading.is_along_gradient ? 1 : -1),
-      entry_(static_cast<double>(clip(grid.size, pixel.ray.origin, pixel.ray.direction).begin)) {
+      entry_(static_cast<double>(clip(grid.size, border, pixel.ray.origin, pixel.ray.direction).begin)) {
   const Vector3<double> forward = in_world(pixel.ray.direction, grid.spacing);
   lighting_ = lighting_of(shading, -forward / forward.matrix().norm());
 }
@@ -320,7 +320,7 @@ template <int Degree>
 PixelLight ShadedRay<Degree>::operator()(const PixelRay& pixel, const Chain<Degree>& signal,
                                          const Samples<double>& samples, const Omissions& omissions) {
   if (signal.pieces.empty()) return {};
-  const LitView view(scene_.grid, *scene_.shading, pixel);
+  const LitView view(scene_.grid, scene_.border, *scene_.shading, pixel);
   if (scheme_ == nullptr || std::holds_alternative<CellCubic>(scheme_->method))
     return integrate(view, signal, signal, samples, omissions, exact_);
   std::string_view refusal_of_samples;

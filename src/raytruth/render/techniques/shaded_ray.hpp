@@ -26,7 +26,7 @@ struct SlabLight {
 /// A pixel's ray as its lighting sees it: where its points lie, their normals, and light and viewer.
 class LitView {
  public:
-  LitView(const Grid& grid, const SceneShading& shading, const PixelRay& pixel);
+  LitView(const Grid& grid, Border border, const SceneShading& shading, const PixelRay& pixel);
 
   [[nodiscard]] const Lighting& lighting() const { return lighting_; }
 

@@ -85,8 +85,10 @@ struct TableMarch::March {
   }
 };
 
-TableMarch::TableMarch(const Grid& grid, const Table<double>& table, TableFilter filter, double step, double opaque)
+TableMarch::TableMarch(const Grid& grid, Border border, const Table<double>& table, TableFilter filter, double step,
+                       double opaque)
     : size_(grid.size),
+      border_(border),
       voxels_(grid, table.axes.low, static_cast<double>(table.axes.size - 1) / (table.axes.high - table.axes.low)),
       texels_(table.values.begin(), table.values.end()),
       entries_(static_cast<int>(table.axes.size)),
@@ -99,7 +101,7 @@ Eigen::Array4d TableMarch::operator()(const PixelRay& pixel,
                                       const std::optional<std::span<const RayPart>>& parts) const {
   const Ray& ray = pixel.ray;
   const double length_unit = pixel.length_unit;
-  const Span inside = clip(size_, ray.origin, ray.direction);
+  const Span inside = clip(size_, border_, ray.origin, ray.direction);
   if (!(inside.begin < inside.end)) return Eigen::Array4d::Zero();
   const auto begin = static_cast<double>(inside.begin);
   const auto length = static_cast<double>(inside.end - inside.begin);

@@ -19,7 +19,8 @@ namespace raytruth {
 class TableMarch {
  public:
   /// `table` has the axes of a range of the grid and the length `step`.
-  TableMarch(const Grid& grid, const Table<double>& table, TableFilter filter, double step, double opaque);
+  TableMarch(const Grid& grid, Border border, const Table<double>& table, TableFilter filter, double step,
+             double opaque);
 
   /// Light in the first three numbers, opacity in the fourth. `parts`: where the ray is looked at, in voxels behind its
   /// entry.
@@ -30,6 +31,7 @@ class TableMarch {
   struct March;
 
   std::array<std::int64_t, 3> size_;
+  Border border_;
   PaddedVoxels<float> voxels_;
   std::vector<float> texels_;
   int entries_;

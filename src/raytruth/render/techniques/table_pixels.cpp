@@ -41,7 +41,7 @@ template <class Field, class MakeView, class SlabOf>
 PixelRenderer slab_renderer(const Field& field, const Scene& scene, const std::shared_ptr<const OccupiedBlocks>& blocks,
                             const MakeView& make_view, const SlabOf& slab_of) {
   return [&field, &scene, blocks, make_view, slab_of, length = table_length(scene),
-          parts_of = PartsOfRay(field.grid().size, blocks.get()), chain = Chain<Field::degree>(),
+          parts_of = PartsOfRay(field.grid().size, field.border(), blocks.get()), chain = Chain<Field::degree>(),
           samples = Samples<double>()](const PixelRay& pixel) mutable -> PixelLight {
     const auto parts = parts_of(pixel.ray, pixel.length_unit);
     if (parts && parts->empty()) return {};
@@ -119,7 +119,9 @@ template <class Field>
 PixelRenderer shaded_table_renderer(const Field& field, const Scene& scene,
                                     const std::shared_ptr<const ShadedTable>& table,
                                     const std::shared_ptr<const OccupiedBlocks>& blocks) {
-  const auto view_of = [&scene](const PixelRay& pixel) { return LitView(scene.grid, *scene.shading, pixel); };
+  const auto view_of = [&scene](const PixelRay& pixel) {
+    return LitView(scene.grid, scene.border, *scene.shading, pixel);
+  };
   const auto slab_of = [&scene, table, clear = ClearScalars(scene.transfer, scene.emission)](
                            const LitView& view, std::size_t first, std::size_t last, const Samples<double>& samples,
                            double share) {
@@ -193,11 +195,11 @@ PixelRendererFactory prepare_shaded(const PreparedScene& prepared) {
 /// Renders by TableMarch.
 PixelRendererFactory prepare_march(const PreparedScene& prepared) {
   const Scene& scene = prepared.scene;
-  const auto march =
-      std::make_shared<const TableMarch>(scene.grid, table_of(scene), scene.table->filter, *scene.step, scene.opaque);
+  const auto march = std::make_shared<const TableMarch>(scene.grid, scene.border, table_of(scene), scene.table->filter,
+                                                        *scene.step, scene.opaque);
   const auto blocks = asked_blocks(scene, std::get<TrilinearField>(prepared.field));
   return [&scene, march, blocks]() -> PixelRenderer {
-    return [march, blocks, parts_of = PartsOfRay(scene.grid.size, blocks.get())](
+    return [march, blocks, parts_of = PartsOfRay(scene.grid.size, scene.border, blocks.get())](
                const PixelRay& pixel) mutable -> PixelLight { return {(*march)(pixel, parts_of(pixel.ray))}; };
   };
 }

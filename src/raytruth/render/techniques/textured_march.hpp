@@ -15,8 +15,8 @@ namespace raytruth {
 /// A pixel as a renderer on a GPU makes it: the volume and the transfer function (colour and extinction at equally
 /// spaced scalars from 0 to 1) are textures, read through units of any precision at the midpoints of steps; associated
 /// colours, composited from front to back. Positions are computed in binary64; coordinates are rounded to Real, in
-/// which everything behind them is computed. `step` is in smallest spacings; light in the first three numbers, opacity
-/// in the fourth.
+/// which everything behind them is computed. The volume ends half a voxel beyond its outermost centres. `step` is in
+/// smallest spacings; light in the first three numbers, opacity in the fourth.
 template <class Real>
 typename Rules<Real>::vec4 march_textures(const TextureUnit<Real>& volume, const TextureUnit<Real>& transfer,
                                           const PixelRay& pixel, double step) {
@@ -25,7 +25,7 @@ typename Rules<Real>::vec4 march_textures(const TextureUnit<Real>& volume, const
   vec4 sum = vec4::Constant(Real(0));
   const auto& size = volume.texture().size;
   const auto direction = unit_direction(pixel.ray.direction);
-  const Span span = clip(size, pixel.ray.origin, direction);
+  const Span span = clip(size, Border::half_voxel, pixel.ray.origin, direction);
   if (!(span.begin < span.end)) return sum;
 
   const auto entries = static_cast<double>(transfer.texture().size[0]);
