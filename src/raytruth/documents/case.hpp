@@ -29,7 +29,8 @@ struct Case {
   std::optional<PiecewiseLinear> transfer;
   Emission emission = Emission::associated;
   std::variant<Chain<3>, Chain<largest_degree>> signal = {};
-  SignalError signal_error = {};                                                ///< of the chain
+  SignalError signal_error = {};                                                    ///< of the chain
+  std::variant<PreciseChain<3>, PreciseChain<largest_degree>> precise_signal = {};  ///< where there is no formula
   std::variant<std::monostate, MarschnerLobbRay, AnalyticSignal> formula = {};  ///< that the chain only approximates
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "raytruth/core/chain.hpp"
+#include "raytruth/signals/precise_chain.hpp"
 #include "raytruth/signals/ray.hpp"
 #include "raytruth/signals/ray_displacement.hpp"
 #include "raytruth/signals/signal_error_bound.hpp"
@@ -35,5 +36,9 @@ Chain<3> trace_trilinear(const Grid& grid, const Ray& ray);
 /// marks pieces whose errors nobody asks for. `displacement`: the signal that is meant is that of a ray so far away.
 SignalError trilinear_error(const Grid& grid, const Ray& ray, const Chain<3>& chain,
                             const std::vector<bool>& is_needless = {}, const RayDisplacement& displacement = {});
+
+/// The ray at its exactly normalised direction in 106 bits, in some ten times the chain's time: at any distance of its
+/// origin, and whatever is added to all voxels. Refusals are those of `trace_trilinear`.
+PreciseChain<3> trace_trilinear_precisely(const Grid& grid, const Ray& ray, const RayDisplacement& displacement = {});
 
 }  // namespace raytruth
