@@ -27,8 +27,8 @@ constexpr double shortest = 0x1p-45;    // in a piece's unit coordinate
 constexpr double briefest = 0x1p-52;    // share of a piece outside its interval where the opacity is 1 just there
 constexpr int most_refinements = 400;   // of one piece
 constexpr double precise = 0x1p-93;  // of the largest coefficient: de Casteljau's steps in pairs, and what begins them
-constexpr double precisely_placed = 0x1p-103;  // of a piece: crossings in pairs
-constexpr double narrow = 0x1p-50;             // of a piece: its length is less than a rounding off by that
+constexpr double precisely_placed = 0x1p-200;  // of a piece: `CutPart::width`
+constexpr double narrow = 0x1p-140;            // of a piece: its length is less than a rounding off by that
 constexpr double most_clear_ratio = 6;  // of 1 - a on an opacity piece: more takes more points than two halves do
 constexpr std::size_t pieces_at_once = 256;
 constexpr double bottomless = 0x1p20;          // optical depth of a homogeneous stretch that need not be known
@@ -182,6 +182,7 @@ struct PreciseStretch {
   double error = 0;  ///< of the scalar
   DoubleDouble length;
   double width = 1;          ///< in its piece
+  double width_of_part = 1;  ///< of what it is cut from, between two crossings
   std::size_t interval = 0;  ///< in which it is, but for what its errors cover
   // Those in which the scalar may be at all: it certainly crosses no jump at the ends of these.
   std::size_t first_interval = 0;
@@ -433,27 +434,33 @@ void RayIntegral::Parts::fit_precisely(const PrecisePiece<Degree>& piece, Buffer
     jumps.push_back(*knot);
     jump_indices.push_back(index);
   }
-  std::vector<arb::CutPart> parts{{0.0, 1.0, 0, 0}};
+  std::vector<arb::CutPart> parts{{0.0, 1.0, 1.0}};
   if (!jumps.empty()) parts = arb::exact_cut(piece, jumps);
   std::vector<KnotStretch> stretches;
   int budget = most_refinements;
   for (const arb::CutPart& part : parts) {
     const std::size_t first = part.first_interval == 0 ? 0 : jump_indices[part.first_interval - 1] + 1;
     const std::size_t last = part.last_interval == jumps.size() ? knots.size() : jump_indices[part.last_interval];
-    const DoubleDouble width = part.end - part.begin;
     const auto polynomial = piece.polynomial.restricted(part.begin, part.end);
     Bernstein<Degree> rounded;
     std::transform(polynomial.coefficients.begin(), polynomial.coefficients.end(), rounded.coefficients.begin(),
                    [](const DoubleDouble& b) { return static_cast<double>(b); });
     stretches.clear();
     cut_(intervals_, rounded, 0, stretches);
-    for (const KnotStretch& stretch : stretches) {
-      const DoubleDouble share = two_sum(stretch.end, -stretch.begin) * width;
-      accept_or_halve_precisely(PreciseStretch<Degree>{.polynomial = polynomial.restricted(stretch.begin, stretch.end),
+    for (std::size_t i = 0; i < stretches.size();) {
+      // What rounding has cut off beyond a jump belongs to its neighbour.
+      const double begin = stretches[i].begin;
+      const std::size_t interval = std::clamp(stretches[i].interval, first, last);
+      while (++i < stretches.size() && std::clamp(stretches[i].interval, first, last) == interval) {
+      }
+      const double end = stretches[i - 1].end;
+      const DoubleDouble share = two_sum(end, -begin) * part.width;
+      accept_or_halve_precisely(PreciseStretch<Degree>{.polynomial = polynomial.restricted(begin, end),
                                                        .error = error,
                                                        .length = share * piece.length,
                                                        .width = share.high,
-                                                       .interval = std::clamp(stretch.interval, first, last),
+                                                       .width_of_part = part.width.high,
+                                                       .interval = interval,
                                                        .first_interval = first,
                                                        .last_interval = last},
                                 budget, buffers);
@@ -486,10 +493,10 @@ void RayIntegral::Parts::accept_or_halve_precisely(const PreciseStretch<Degree>&
   if (stretch.interval == stretch.last_interval && stretch.interval < intervals_.knots().size()) ends[1] = {};
   const bool is_settled = ends[0].is_settled && ends[1].is_settled;
   if (is_settled || stretch.width <= shortest || budget <= 0 || is_noise(normalised, 0)) {
-    if (stretch.width < narrow)
+    if (stretch.width_of_part < narrow)
       for (Outside& end : ends)
         if (end.share == 0)
-          end = {.share = std::min(1.0, precisely_placed / stretch.width),
+          end = {.share = std::min(1.0, precisely_placed / stretch.width_of_part),
                  .extinction = interval.most_extinction,
                  .color = interval.most_color};
     accept(ends, piece, error, {0, 0, 1, stretch.interval}, normalised, 0, budget, buffers);
@@ -522,6 +529,7 @@ void RayIntegral::Parts::accept(const std::array<Outside, 2>& ends, const Piece<
   double length = width * piece.length;
   if (!interval.is_linear && length * interval.at_0.extinction > bottomless)
     length = deep_enough / interval.at_0.extinction;
+  const bool is_bottomless = emission_ == Emission::associated && length * interval.most_extinction > bottomless;
   double depth_error = 0;
   double color_error = 0;
   for (const Outside& outside : ends) {
@@ -530,7 +538,11 @@ void RayIntegral::Parts::accept(const std::array<Outside, 2>& ends, const Piece<
     const double color = interval.most_color + outside.color;
     depth_error += stretch_outside * outside.extinction;
     // Two things may be wrong: the source there, and all that is seen through the stretch.
-    if (emission_ == Emission::associated)
+    if (is_bottomless)
+      // The integral of tau T is at most 1, whatever the extinction.
+      color_error += 2 * stretch_outside * outside.extinction * color +
+                     std::min(1.0, stretch_outside * interval.most_extinction) * outside.color;
+    else if (emission_ == Emission::associated)
       color_error += stretch_outside * (2 * outside.extinction * color + interval.most_extinction * outside.color);
     else
       color_error += stretch_outside * (outside.color + length * outside.extinction * color);
@@ -1001,8 +1013,8 @@ Answer RayIntegral::Parts::integrate_in_other_units(const Chain<Degree>& signal,
     // The answer is rounded once more where it is below 2^-1022.
     return std::nextafter(std::ldexp(slack * (x + lost), exponent), HUGE_VAL) + 0x1p-1074;
   };
-  answer.color_error = upwards(answer.color_error, of_color);
-  answer.opacity_error = upwards(answer.opacity_error, units.depth());
+  answer.color_error = intervals_.most_color() > 0 ? upwards(answer.color_error, of_color) : 0;
+  answer.opacity_error = intervals_.most_extinction() > 0 ? upwards(answer.opacity_error, units.depth()) : 0;
   answer.light.color = answer.light.color.unaryExpr([&](double c) { return std::ldexp(c, of_color); });
   answer.light.opacity = std::ldexp(answer.light.opacity, units.depth());
   return answer;

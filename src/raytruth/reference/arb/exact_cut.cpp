@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 namespace raytruth::arb {
 
@@ -22,7 +21,7 @@ class Rational {
     constexpr int digits = 53;
     int exponent = 0;
     const double fraction = std::frexp(value, &exponent);
-    fmpz_set_si(fmpq_numref(x_), static_cast<std::int64_t>(std::ldexp(fraction, digits)));
+    fmpz_set_d(fmpq_numref(x_), std::ldexp(fraction, digits));
     exponent -= digits;
     if (exponent >= 0)
       fmpz_mul_2exp(fmpq_numref(x_), fmpq_numref(x_), static_cast<ulong>(exponent));
@@ -56,6 +55,16 @@ class Rational {
   fmpq_t x_;
 };
 
+/// A place of a piece in 212 bits.
+struct Place {
+  DoubleDouble nearest;
+  DoubleDouble rest;
+
+  [[nodiscard]] Rational exact() const { return Rational(nearest) + Rational(rest); }
+
+  friend auto operator<=>(const Place&, const Place&) = default;
+};
+
 /// A polynomial with rational coefficients.
 class RationalPolynomial {
  public:
@@ -80,9 +89,9 @@ class RationalPolynomial {
 
   /// The sign between two places between which it does not change; 0 of nothing but zeros. It may vanish at some places
   /// there, at no more than its degree.
-  [[nodiscard]] int sign_between(const DoubleDouble& begin, const DoubleDouble& end) const {
-    const Rational step = (Rational(end) + Rational(-begin)) * Rational(0x1p-4);
-    Rational place(begin);
+  [[nodiscard]] int sign_between(const Place& begin, const Place& end) const {
+    Rational place = begin.exact();
+    const Rational step = (end.exact() + Rational(-1.0) * place) * Rational(0x1p-4);
     for (slong i = 0; i <= std::max<slong>(fmpq_poly_degree(p_), 0); ++i) {
       place = place + step;
       if (const int sign = sign_at(place); sign != 0) return sign;
@@ -91,7 +100,7 @@ class RationalPolynomial {
   }
 
   /// Adds the places in (0, 1) where the sign changes.
-  void add_sign_changes(std::vector<DoubleDouble>& places) const {
+  void add_sign_changes(std::vector<Place>& places) const {
     if (fmpq_poly_degree(p_) < 1) return;
     fmpz_poly_t numerator;
     fmpz_poly_t odd;
@@ -110,8 +119,8 @@ class RationalPolynomial {
       arb_fmpz_poly_complex_roots(roots, odd, 0, bits);
       for (slong i = 0; i < degree; ++i) {
         if (arb_is_zero(acb_imagref(roots + i)) == 0) continue;
-        const DoubleDouble place = nearest(acb_realref(roots + i));
-        if (DoubleDouble(0) < place && place < DoubleDouble(1)) places.push_back(place);
+        const Place place = nearest(acb_realref(roots + i));
+        if (DoubleDouble(0) < place.nearest && place.nearest < DoubleDouble(1)) places.push_back(place);
       }
       _acb_vec_clear(roots, degree);
     }
@@ -130,15 +139,25 @@ class RationalPolynomial {
     return sign;
   }
 
-  static DoubleDouble nearest(const arb_t ball) {
-    const double high = arf_get_d(arb_midref(ball), ARF_RND_NEAR);
+  /// The middle of a ball, in four numbers.
+  static Place nearest(const arb_t ball) {
     arf_t rest;
     arf_init(rest);
-    arf_set_d(rest, -high);
-    arf_add(rest, rest, arb_midref(ball), ARF_PREC_EXACT, ARF_RND_NEAR);
-    const double low = arf_get_d(rest, ARF_RND_NEAR);
+    arf_set(rest, arb_midref(ball));
+    const auto take = [&rest] {
+      const double part = arf_get_d(rest, ARF_RND_NEAR);
+      arf_t taken;
+      arf_init(taken);
+      arf_set_d(taken, part);
+      arf_sub(rest, rest, taken, ARF_PREC_EXACT, ARF_RND_NEAR);
+      arf_clear(taken);
+      return part;
+    };
+    Place place;
+    for (double* const part : {&place.nearest.high, &place.nearest.low, &place.rest.high, &place.rest.low})
+      *part = take();
     arf_clear(rest);
-    return {high, low};
+    return place;
   }
 
   fmpq_poly_t p_;
@@ -179,7 +198,7 @@ std::vector<CutPart> exact_cut(const PrecisePiece<Degree>& piece, const std::vec
   // The signal less each knot, above it and below it by the error.
   std::vector<RationalPolynomial> above;
   std::vector<RationalPolynomial> below;
-  std::vector<DoubleDouble> places{0.0, 1.0};
+  std::vector<Place> places{{0.0, {}}, {1.0, {}}};
   for (const double knot : knots) {
     above.push_back(signal.less(Rational(knot) + Rational(error)));
     above.back().add_sign_changes(places);
@@ -192,11 +211,14 @@ std::vector<CutPart> exact_cut(const PrecisePiece<Degree>& piece, const std::vec
 
   std::vector<CutPart> parts;
   for (std::size_t i = 0; i + 1 < places.size(); ++i) {
-    CutPart part{.begin = places[i], .end = places[i + 1]};
+    const Place& begin = places[i];
+    const Place& end = places[i + 1];
+    CutPart part{
+        .begin = begin.nearest, .end = end.nearest, .width = (end.nearest - begin.nearest) + (end.rest - begin.rest)};
     for (std::size_t k = 0; k < knots.size(); ++k) {
-      if (above[k].sign_between(part.begin, part.end) >= 0)
+      if (above[k].sign_between(begin, end) >= 0)
         part.first_interval = part.last_interval = k + 1;
-      else if (error > 0 && below[k].sign_between(part.begin, part.end) > 0)
+      else if (error > 0 && below[k].sign_between(begin, end) > 0)
         part.last_interval = k + 1;
     }
     parts.push_back(part);
