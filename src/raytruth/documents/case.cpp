@@ -44,7 +44,10 @@ void read_piecewise_polynomial(const JsonReader& json, Case& ray) {
   for (const JsonReader& piece : json.at("coefficients").items())
     coefficients.push_back(piece.numbers(largest_degree + 1));
   auto chain = json.at("coefficients").blame_for([&] { return piecewise_polynomial(breaks, coefficients); });
-  if (ray.transfer) ray.signal_error = piecewise_polynomial_error(breaks, coefficients, chain);
+  if (ray.transfer) {
+    ray.signal_error = piecewise_polynomial_error(breaks, coefficients, chain);
+    ray.precise_signal = precise_piecewise_polynomial(breaks, coefficients);
+  }
   ray.signal = std::move(chain);
 }
 
@@ -79,7 +82,10 @@ void trace(const JsonReader& json, const Field& field, const Ray& ray, Case& res
     field.trace(ray, chain);
     return 0;
   });
-  if (result.transfer) result.signal_error = field.error(ray, chain);
+  if (result.transfer) {
+    result.signal_error = field.error(ray, chain);
+    result.precise_signal = field.trace_precisely(ray);
+  }
   result.border = field.border();
   if (chain.pieces.empty() && has_no_extent(field.grid(), field.border()))
     warnings.push_back(fmt::format("{}: warning: the ray is empty: {}", json.place(), why_no_extent));
@@ -122,7 +128,11 @@ Certified truth_of(const Case& ray, const Chain<Degree>& signal) {
     return arb_integral(*marschner_lobb, *ray.transfer, ray.emission);
   if (const auto* const analytic = std::get_if<AnalyticSignal>(&ray.formula))
     return arb_integral(*analytic, *ray.transfer, ray.emission);
-  return RayIntegral(*ray.transfer, ray.emission)(signal, ray.signal_error);
+  RayIntegral integral(*ray.transfer, ray.emission);
+  const Certified truth = integral(signal, ray.signal_error);
+  if (truth.status == Status::converged) return truth;
+  const Certified better = integral(std::get<PreciseChain<Degree>>(ray.precise_signal));
+  return better.radius < truth.radius ? better : truth;
 }
 
 Json truth_json(const Certified& truth) {

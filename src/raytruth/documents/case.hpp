@@ -32,7 +32,8 @@ struct Case {
       {};  ///< of another program's file; null: the points are of this program
   Emission emission = Emission::associated;
   std::variant<Chain<3>, Chain<largest_degree>> signal = {};
-  SignalError signal_error = {};                                                ///< of the chain
+  SignalError signal_error = {};                                                    ///< of the chain
+  std::variant<PreciseChain<3>, PreciseChain<largest_degree>> precise_signal = {};  ///< where there is no formula
   std::variant<std::monostate, MarschnerLobbRay, AnalyticSignal> formula = {};  ///< that the chain only approximates
   std::optional<Border> border = {};                                            ///< of the volume, if there is one
 };

@@ -42,7 +42,11 @@ nlohmann::ordered_json refused(std::string_view why) { return {{"status", "refus
 void add_status(nlohmann::ordered_json& answer, Status status) {
   if (status == Status::converged) return;
   answer["status"] = "not_converged";
-  answer["why"] = "error_bound holds, but is wider than is asked for";
+  answer["why"] =
+      "error_bound holds, but is above 1e-13 times the brightest light that a ray can have (at least 1): rounding "
+      "hides "
+      "on which side of a jump of the transfer function the scalar is, or how near it comes to an opacity of 1, or the "
+      "ray is very deep";
 }
 
 Sampling read_sampling(const JsonReader& json) {

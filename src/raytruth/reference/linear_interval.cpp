@@ -187,6 +187,7 @@ LinearIntervals::LinearIntervals(const PiecewiseLinear& transfer) {
           end_towards(interval, 1, intervals_[i + 1], i + 1 == count, width(i + 1) / width(i), units_per_length_);
       largest_optics(intervals_[i + 1].at_0);
     }
+    largest_scale_ = std::max(largest_scale_, interval.scale);
     interval.typical_extinction = interval.most_extinction;
     if (units_per_length_ > 0) {
       interval.most_extinction = std::min(interval.most_extinction, most_mean_of_opaque * units_per_length_);
@@ -195,10 +196,23 @@ LinearIntervals::LinearIntervals(const PiecewiseLinear& transfer) {
   }
 }
 
+std::pair<std::size_t, std::size_t> LinearIntervals::reached(double low, double high) const {
+  return {static_cast<std::size_t>(std::lower_bound(knots_.begin(), knots_.end(), low) - knots_.begin()),
+          static_cast<std::size_t>(std::upper_bound(knots_.begin(), knots_.end(), high) - knots_.begin())};
+}
+
+bool LinearIntervals::are_dark(double low, double high, Emission emission) const {
+  const auto is_dark = [emission](const Optics& optics) {
+    return optics.extinction == 0 && (emission == Emission::associated || (optics.color == 0).all());
+  };
+  const auto [first, last] = reached(low, high);
+  for (std::size_t i = first; i <= last; ++i)
+    if (!is_dark(intervals_[i].at_0) || !is_dark(intervals_[i].at_1)) return false;
+  return true;
+}
+
 double LinearIntervals::most_extinction(double low, double high) const {
-  // From the interval that ends at or above low to the one that begins at or below high: jumps count from both sides.
-  const auto first = static_cast<std::size_t>(std::lower_bound(knots_.begin(), knots_.end(), low) - knots_.begin());
-  const auto last = static_cast<std::size_t>(std::upper_bound(knots_.begin(), knots_.end(), high) - knots_.begin());
+  const auto [first, last] = reached(low, high);
   double most = 0;
   for (std::size_t i = first; i <= last; ++i) {
     const LinearInterval& interval = intervals_[i];

@@ -1,8 +1,11 @@
 #pragma once
 
+#include "raytruth/transfer/emission.hpp"
 #include "raytruth/transfer/piecewise_linear.hpp"
 
 #include <array>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace raytruth {
@@ -76,7 +79,16 @@ class LinearIntervals {
   [[nodiscard]] double most_extinction() const { return most_extinction_; }
   [[nodiscard]] double most_color() const { return most_color_; }
 
+  /// Whether nothing absorbs, and in plain emission nothing shines, at any scalar from low to high.
+  [[nodiscard]] bool are_dark(double low, double high, Emission emission) const;
+
+  /// The largest `scale` of an interval.
+  [[nodiscard]] double largest_scale() const { return largest_scale_; }
+
  private:
+  /// From the interval that ends at or above low to the one that begins at or below high: jumps count from both sides.
+  [[nodiscard]] std::pair<std::size_t, std::size_t> reached(double low, double high) const;
+
   std::vector<double> knots_;
   std::vector<LinearInterval> intervals_;
   bool has_jumps_ = false;
@@ -84,6 +96,7 @@ class LinearIntervals {
   double units_per_length_ = 0;
   double most_extinction_ = 0;
   double most_color_ = 0;
+  double largest_scale_ = 0;
 };
 
 }  // namespace raytruth

@@ -117,6 +117,29 @@ constexpr double most_nodes_of(const OpacityPiece<Degree>& /*piece*/) {
   return most_points;
 }
 
+/// Nor is what lies behind an unknown depth computed: either half of a piece might be so deep, at every level.
+bool is_behind_seen(const PieceIntegral<>& front) {
+  return front.depth - front.depth_error <= opaque_depth && front.depth_error <= opaque_depth;
+}
+
+/// Two pieces, one behind the other.
+PieceIntegral<> composed(const PieceIntegral<>& front, const PieceIntegral<>& behind) {
+  PieceIntegral<> result = front;
+  const double front_depth = front.depth - front.depth_error;
+  const double transmittance = exponential(-result.depth);
+  const double most_transmittance = slack * exponential(-std::max(front_depth, 0.0));
+  result.weight_0 += transmittance * behind.weight_0;
+  result.weight_1 += transmittance * behind.weight_1;
+  result.weight_error = slack * (result.weight_error + most_transmittance * behind.weight_error +
+                                 (std::abs(behind.weight_0) + std::abs(behind.weight_1)) * most_transmittance *
+                                     (std::min(1.0, 2 * result.depth_error) + 8 * unit_roundoff) +
+                                 4 * unit_roundoff * (std::abs(result.weight_0) + std::abs(result.weight_1)));
+  result.depth += behind.depth;
+  result.depth_error = slack * (result.depth_error + behind.depth_error + unit_roundoff * result.depth);
+  result.nodes += behind.nodes;
+  return result;
+}
+
 template <class Piece, class Whole>
 PieceIntegral<> integrate_by_halves(const Piece& piece, bool associated, const Whole& whole, int level);
 
@@ -133,24 +156,56 @@ PieceIntegral<> integrate_by_halves(const Piece& piece, bool associated, const W
   const PieceIntegral<> bound = crude(piece, associated);
   if (is_given_up(piece, bound, level)) return bound;
   const auto [front, back] = halves(piece);
-  PieceIntegral<> result = integrate(front, associated, whole, level + 1);
-  const double front_depth = result.depth - result.depth_error;
-  // Nor is what lies behind an unknown depth computed: either half might be so deep, at every level.
-  const bool is_behind_seen = front_depth <= opaque_depth && result.depth_error <= opaque_depth;
-  const PieceIntegral<> behind =
-      is_behind_seen ? integrate(back, associated, whole, level + 1) : crude(back, associated);
-  const double transmittance = exponential(-result.depth);
-  const double most_transmittance = slack * exponential(-std::max(front_depth, 0.0));
-  result.weight_0 += transmittance * behind.weight_0;
-  result.weight_1 += transmittance * behind.weight_1;
-  result.weight_error = slack * (result.weight_error + most_transmittance * behind.weight_error +
-                                 (std::abs(behind.weight_0) + std::abs(behind.weight_1)) * most_transmittance *
-                                     (std::min(1.0, 2 * result.depth_error) + 8 * unit_roundoff) +
-                                 4 * unit_roundoff * (std::abs(result.weight_0) + std::abs(result.weight_1)));
-  result.depth += behind.depth;
-  result.depth_error = slack * (result.depth_error + behind.depth_error + unit_roundoff * result.depth);
-  result.nodes += behind.nodes;
+  const PieceIntegral<> result = integrate(front, associated, whole, level + 1);
+  return composed(result,
+                  is_behind_seen(result) ? integrate(back, associated, whole, level + 1) : crude(back, associated));
+}
+
+/// The piece between two places of its unit coordinate.
+template <int Degree>
+LinearPiece<Degree> part_of(const LinearPiece<Degree>& piece, double begin, double end) {
+  LinearPiece<Degree> part = piece;
+  part.x = Bernstein<Degree>{piece.x}.restricted(begin, end).coefficients;
+  double reach = 0;
+  for (const double x : piece.x) reach = std::max(reach, std::abs(x));
+  part.length = (end - begin) * piece.length;
+  part.x_error += slack * 4 * Degree * unit_roundoff * reach;
+  return part;
+}
+
+/// A piece that may be so deep that halving it down to what is seen would add up to many errors: it is cut at powers of
+/// two, each part from the whole.
+template <int Degree, class Whole>
+PieceIntegral<> integrate_bottomless(const LinearPiece<Degree>& piece, double most_depth, bool associated,
+                                     const Whole& whole) {
+  constexpr int first_depth = 10;  // of the part at the front, by its exponent
+  const int octaves = std::ilogb(most_depth) - first_depth;
+  PieceIntegral<> result;
+  for (int octave = octaves; octave >= 0; --octave) {
+    const double begin = octave == octaves ? 0 : std::ldexp(1, -octave - 1);
+    const double end = std::ldexp(1, -octave);
+    result = composed(result, integrate(part_of(piece, begin, end), associated, whole));
+    if (is_behind_seen(result)) continue;
+    return end < 1 ? composed(result, crude(part_of(piece, end, 1), associated)) : result;
+  }
   return result;
+}
+
+/// An upper bound for the optical depth.
+template <int Degree>
+double most_depth(const LinearPiece<Degree>& piece) {
+  double reach = 0;
+  for (const double x : piece.x) reach = std::max({reach, std::abs(x), std::abs(1 - x)});
+  return piece.length * (piece.extinction_at_0 + piece.extinction_at_1) * reach;
+}
+
+/// A piece of any depth.
+template <int Degree, class Whole>
+PieceIntegral<> integrate_whole(const LinearPiece<Degree>& piece, bool associated, const Whole& whole) {
+  constexpr double bottomless = 0x1p20;
+  const double most = most_depth(piece);
+  return most > bottomless && std::isfinite(most) ? integrate_bottomless(piece, most, associated, whole)
+                                                  : integrate(piece, associated, whole);
 }
 
 }  // namespace
@@ -230,12 +285,12 @@ PieceIntegral<Eight> integrate(const OpacityPiece<Degree, Eight>& pieces, Emissi
 
 template <int Degree>
 PieceIntegral<> integrate(const LinearPiece<Degree>& piece, Emission emission) {
-  return integrate(piece, emission == Emission::associated, kernels<Degree>().integrate_one);
+  return integrate_whole(piece, emission == Emission::associated, kernels<Degree>().integrate_one);
 }
 
 template <int Degree>
 PieceIntegral<> integrate_scalar(const LinearPiece<Degree>& piece, Emission emission) {
-  return integrate(piece, emission == Emission::associated, kernels<Degree>().integrate_scalar);
+  return integrate_whole(piece, emission == Emission::associated, kernels<Degree>().integrate_scalar);
 }
 
 template <int Degree>

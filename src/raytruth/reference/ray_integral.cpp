@@ -4,9 +4,11 @@
 #include "raytruth/kernels/exponential.hpp"
 #include "raytruth/kernels/gauss_legendre.hpp"
 #include "raytruth/kernels/kernels.hpp"
+#include "raytruth/reference/arb/exact_cut.hpp"
 #include "raytruth/reference/knot_cut.hpp"
 #include "raytruth/reference/linear_interval.hpp"
 #include "raytruth/reference/piece_integral.hpp"
+#include "raytruth/reference/units.hpp"
 #include "raytruth/signals/piecewise_polynomial.hpp"
 
 #include <algorithm>
@@ -24,8 +26,16 @@ constexpr double brief = 0x1p-20;       // share of a stretch outside its interv
 constexpr double shortest = 0x1p-45;    // in a piece's unit coordinate
 constexpr double briefest = 0x1p-52;    // share of a piece outside its interval where the opacity is 1 just there
 constexpr int most_refinements = 400;   // of one piece
+constexpr double precise = 0x1p-93;  // of the largest coefficient: de Casteljau's steps in pairs, and what begins them
+constexpr double precisely_placed = 0x1p-200;  // of a piece: `CutPart::width`
+constexpr double narrow = 0x1p-140;            // of a piece: its length is less than a rounding off by that
 constexpr double most_clear_ratio = 6;  // of 1 - a on an opacity piece: more takes more points than two halves do
 constexpr std::size_t pieces_at_once = 256;
+constexpr double bottomless = 0x1p20;          // optical depth of a homogeneous stretch that need not be known
+constexpr double deep_enough = 0x1p10;         // which then stands for it
+constexpr double longest_at_hand = 0x1p400;    // longer rays are done in other units
+constexpr double deepest_at_hand = 0x1p800;    // and deeper ones
+constexpr double negligible_radius = 0x1p-60;  // share of a radius that its slack covers
 
 /// How wrong an interval's linear functions are on a stretch that leaves it: by how much at most, and on what share.
 struct Outside {
@@ -89,9 +99,12 @@ Outside beyond(const IntervalEnd& end, double at_begin, double at_end, double in
 }
 
 /// How far exp(-D) can be from its value at hand, for |D - depth| <= depth_error: e^d - 1 <= 2 d up to d = 1. Depths
-/// above 700 count as 700.
+/// above 700 count as 700. Of an error above 1 all that is told is how little the least depth lets through.
 double drift_of(double depth, double transmittance, double depth_error) {
-  if (depth_error >= 1) return 1;
+  if (depth_error >= 1) {
+    const double least = depth - depth_error;
+    return least > 0 ? slack * exponential(-least) : 1;
+  }
   return transmittance * 2 * depth_error + (depth < 690 ? 0 : 0x1p-990);
 }
 
@@ -117,6 +130,14 @@ struct Sum {
       color_rest[channel] += exact.low;
     }
   }
+};
+
+/// What a ray comes to, with proven bounds.
+struct Answer {
+  Slab<> light;
+  double color_error = 0;
+  double opacity_error = 0;
+  double nodes = 0;
 };
 
 /// Where the integral of a piece comes from, for transfer functions that are linear in opacity.
@@ -152,6 +173,20 @@ struct ContactStretch {
   double begin;
   double end;
   Bernstein<Degree, DoubleDouble> distance;
+};
+
+/// A stretch in 106 bits, in a unit coordinate of its own.
+template <int Degree>
+struct PreciseStretch {
+  Bernstein<Degree, DoubleDouble> polynomial;
+  double error = 0;  ///< of the scalar
+  DoubleDouble length;
+  double width = 1;          ///< in its piece
+  double width_of_part = 1;  ///< of what it is cut from, between two crossings
+  std::size_t interval = 0;  ///< in which it is, but for what its errors cover
+  // Those in which the scalar may be at all: it certainly crosses no jump at the ends of these.
+  std::size_t first_interval = 0;
+  std::size_t last_interval = 0;
 };
 
 /// Whether a piece that is not opaque may touch what is, so that the ray ends; or the other way round.
@@ -205,6 +240,12 @@ void set_stretch(Stretches<Degree>& stretches, std::size_t lane, const Bernstein
   stretches.top[lane] = interval.top;
 }
 
+/// Whether a chain is the signal itself.
+bool is_zero(const SignalError& error) {
+  return error.of_length == 0 && error.unclaimed == 0 &&
+         std::all_of(error.of_pieces.begin(), error.of_pieces.end(), [](double of_piece) { return of_piece == 0; });
+}
+
 /// Whether the scalar varies by no more than what is known of it.
 template <int Degree>
 bool is_noise(const NormalisedStretches<Degree>& normalised, std::size_t lane) {
@@ -228,18 +269,47 @@ void append(const PieceIntegral<>& integral, std::size_t interval, Buffers<Degre
 }  // namespace
 
 struct RayIntegral::Parts {
-  Parts(const PiecewiseLinear& transfer, Emission its_emission) : intervals_(transfer), emission_(its_emission) {}
+  Parts(const PiecewiseLinear& transfer, Emission its_emission)
+      : transfer_(transfer),
+        intervals_(transfer),
+        emission_(its_emission),
+        most_underflow_(0x1p-1033 * std::max(1.0, intervals_.largest_scale()) *
+                        std::max(1.0, intervals_.most_extinction()) * std::max(1.0, intervals_.most_color())) {}
 
   template <int Degree>
-  Certified integrate_ray(const Chain<Degree>& signal, const SignalError& error, double tolerance);
+  Certified operator()(const Chain<Degree>& signal, const SignalError& error, double tolerance);
+  template <int Degree>
+  Certified operator()(const PreciseChain<Degree>& signal, double tolerance);
 
  private:
   template <int Degree>
+  Answer integrate_ray(const Chain<Degree>& signal, const SignalError& error);
+  template <int Degree>
+  Answer integrate_in_other_units(const Chain<Degree>& signal, const SignalError& error) const;
+  [[nodiscard]] double most_underflow(double length, std::size_t pieces) const {
+    return most_underflow_ * std::max(1.0, length) * static_cast<double>(pieces);
+  }
+  template <int Degree>
+  [[nodiscard]] double underflow(const Chain<Degree>& signal) const;
+  template <int Degree>
+  [[nodiscard]] bool is_dark(const Chain<Degree>& signal, const SignalError& error) const;
+  template <int Degree>
   void fit(const Chain<Degree>& signal, const SignalError& error, Buffers<Degree>& buffers) const;
+  template <int Degree>
+  std::array<Outside, 2> outside(const LinearInterval& interval, const NormalisedStretches<Degree>& normalised,
+                                 std::size_t lane, double width) const;
   template <int Degree>
   void accept_or_halve(const Piece<Degree>& piece, const PieceError& error, const KnotStretch& stretch,
                        const NormalisedStretches<Degree>& normalised, std::size_t lane, int& budget,
                        Buffers<Degree>& buffers) const;
+  template <int Degree>
+  void accept(const std::array<Outside, 2>& ends, const Piece<Degree>& piece, const PieceError& error,
+              const KnotStretch& stretch, const NormalisedStretches<Degree>& normalised, std::size_t lane, int& budget,
+              Buffers<Degree>& buffers) const;
+  template <int Degree>
+  void fit_precisely(const PrecisePiece<Degree>& piece, Buffers<Degree>& buffers);
+  template <int Degree>
+  void accept_or_halve_precisely(const PreciseStretch<Degree>& stretch, int& budget, Buffers<Degree>& buffers) const;
   template <int Degree>
   void append_opacity(const OpacityPiece<Degree>& piece, int level, std::size_t interval,
                       Buffers<Degree>& buffers) const;
@@ -264,11 +334,13 @@ struct RayIntegral::Parts {
   void integrate_pieces(Buffers<Degree>& buffers, Sum& sum) const;
   template <int Degree>
   void add_end(const Chain<Degree>& signal, const SignalError& error, Sum& sum) const;
-  [[nodiscard]] Certified finish(const Sum& sum, double length, double hidden, const SignalError& error,
-                                 double tolerance) const;
+  [[nodiscard]] Answer finish(const Sum& sum, double length, double hidden, const SignalError& error) const;
+  [[nodiscard]] Certified certified(const Answer& answer, double length, double tolerance) const;
 
+  PiecewiseLinear transfer_;
   LinearIntervals intervals_;
   Emission emission_;
+  double most_underflow_;  ///< what `underflow` can be for a piece in a ray of length 1
   KnotCut cut_;
   std::tuple<Buffers<3>, Buffers<largest_degree>> buffers_;
 };
@@ -300,14 +372,11 @@ void RayIntegral::Parts::fit(const Chain<Degree>& signal, const SignalError& err
   }
 }
 
-/// Appends a stretch that is inside its interval but for what its errors cover; else its two halves.
+/// How wrong an interval's linear functions are beyond its two ends on a stretch, or on one `width` wide in its piece.
 template <int Degree>
-void RayIntegral::Parts::accept_or_halve(const Piece<Degree>& piece, const PieceError& error,
-                                         const KnotStretch& stretch, const NormalisedStretches<Degree>& normalised,
-                                         std::size_t lane, int& budget, Buffers<Degree>& buffers) const {
-  const LinearInterval& interval = intervals_[stretch.interval];
-  if (buffers.is_over) return;
-  const double width = stretch.end - stretch.begin;
+std::array<Outside, 2> RayIntegral::Parts::outside(const LinearInterval& interval,
+                                                   const NormalisedStretches<Degree>& normalised, std::size_t lane,
+                                                   double width) const {
   const auto beyond_end = [&](const IntervalEnd& end, const Margins& margins) {
     return beyond(end, margins.at_begin[lane], margins.at_end[lane], margins.inside[lane], width, Degree, interval,
                   intervals_);
@@ -316,23 +385,151 @@ void RayIntegral::Parts::accept_or_halve(const Piece<Degree>& piece, const Piece
   // Where the interval's own opacity comes to 1 the parts are cut by better means (`append_contact`).
   for (std::size_t end = 0; end < 2; ++end)
     if (interval.is_opacity && interval.clear[end] == 0) ends[end] = {};
+  return ends;
+}
+
+/// Appends a stretch that is inside its interval but for what its errors cover; else its two halves.
+template <int Degree>
+void RayIntegral::Parts::accept_or_halve(const Piece<Degree>& piece, const PieceError& error,
+                                         const KnotStretch& stretch, const NormalisedStretches<Degree>& normalised,
+                                         std::size_t lane, int& budget, Buffers<Degree>& buffers) const {
+  if (buffers.is_over) return;
+  const double width = stretch.end - stretch.begin;
+  const auto ends = outside(intervals_[stretch.interval], normalised, lane, width);
   const bool is_settled = ends[0].is_settled && ends[1].is_settled;
-  if (!is_settled && width > shortest && budget > 0 && !is_noise(normalised, lane)) {
-    --budget;
-    const double middle = stretch.begin + width / 2;
-    for (const auto& [begin, end] : {std::pair{stretch.begin, middle}, {middle, stretch.end}}) {
-      const double value = piece.polynomial.value(begin + (end - begin) / 2);
-      const auto& knots = intervals_.knots();
-      const auto above = std::upper_bound(knots.begin(), knots.end(), value);
-      const KnotStretch half{stretch.piece, begin, end, static_cast<std::size_t>(above - knots.begin())};
-      Stretches<Degree> eight;
-      set_stretch(eight, 0, piece.polynomial, error.signal, begin, end, intervals_[half.interval]);
-      accept_or_halve(piece, error, half, kernels<Degree>().normalise(eight), 0, budget, buffers);
-    }
+  if (is_settled || width <= shortest || budget <= 0 || is_noise(normalised, lane)) {
+    accept(ends, piece, error, stretch, normalised, lane, budget, buffers);
     return;
   }
+  --budget;
+  const double middle = stretch.begin + width / 2;
+  for (const auto& [begin, end] : {std::pair{stretch.begin, middle}, {middle, stretch.end}}) {
+    const double value = piece.polynomial.value(begin + (end - begin) / 2);
+    const auto& knots = intervals_.knots();
+    const auto above = std::upper_bound(knots.begin(), knots.end(), value);
+    const KnotStretch half{stretch.piece, begin, end, static_cast<std::size_t>(above - knots.begin())};
+    Stretches<Degree> eight;
+    set_stretch(eight, 0, piece.polynomial, error.signal, begin, end, intervals_[half.interval]);
+    accept_or_halve(piece, error, half, kernels<Degree>().normalise(eight), 0, budget, buffers);
+  }
+}
 
-  const double length = width * piece.length;
+/// Makes stretches of a piece in 106 bits, cut without rounding where it crosses jumps.
+template <int Degree>
+void RayIntegral::Parts::fit_precisely(const PrecisePiece<Degree>& piece, Buffers<Degree>& buffers) {
+  const auto& knots = intervals_.knots();
+  double largest = 0;
+  for (const DoubleDouble& b : piece.polynomial.coefficients) largest = std::max(largest, std::abs(b.high));
+  const double error = slack * (piece.error + precise * largest);
+  const auto [low, high] =
+      std::minmax_element(piece.polynomial.coefficients.begin(), piece.polynomial.coefficients.end());
+  const double reach = 2 * error + 4 * unit_roundoff * largest;
+  std::vector<double> jumps;
+  std::vector<std::size_t> jump_indices;
+  for (auto knot = std::lower_bound(knots.begin(), knots.end(), low->high - reach);
+       knot != knots.end() && *knot <= high->high + reach; ++knot) {
+    const auto index = static_cast<std::size_t>(knot - knots.begin());
+    const IntervalEnd& end = intervals_[index].end_1;
+    if (end.extinction_jump == 0 && end.color_jump == 0) continue;
+    jumps.push_back(*knot);
+    jump_indices.push_back(index);
+  }
+  std::vector<arb::CutPart> parts{{0.0, 1.0, 1.0}};
+  if (!jumps.empty()) parts = arb::exact_cut(piece, jumps);
+  std::vector<KnotStretch> stretches;
+  int budget = most_refinements;
+  for (const arb::CutPart& part : parts) {
+    const std::size_t first = part.first_interval == 0 ? 0 : jump_indices[part.first_interval - 1] + 1;
+    const std::size_t last = part.last_interval == jumps.size() ? knots.size() : jump_indices[part.last_interval];
+    const auto polynomial = piece.polynomial.restricted(part.begin, part.end);
+    Bernstein<Degree> rounded;
+    std::transform(polynomial.coefficients.begin(), polynomial.coefficients.end(), rounded.coefficients.begin(),
+                   [](const DoubleDouble& b) { return static_cast<double>(b); });
+    stretches.clear();
+    cut_(intervals_, rounded, 0, stretches);
+    for (std::size_t i = 0; i < stretches.size();) {
+      // What rounding has cut off beyond a jump belongs to its neighbour.
+      const double begin = stretches[i].begin;
+      const std::size_t interval = std::clamp(stretches[i].interval, first, last);
+      while (++i < stretches.size() && std::clamp(stretches[i].interval, first, last) == interval) {
+      }
+      const double end = stretches[i - 1].end;
+      const DoubleDouble share = two_sum(end, -begin) * part.width;
+      accept_or_halve_precisely(PreciseStretch<Degree>{.polynomial = polynomial.restricted(begin, end),
+                                                       .error = error,
+                                                       .length = share * piece.length,
+                                                       .width = share.high,
+                                                       .width_of_part = part.width.high,
+                                                       .interval = interval,
+                                                       .first_interval = first,
+                                                       .last_interval = last},
+                                budget, buffers);
+    }
+  }
+}
+
+/// The same as `accept_or_halve` in 106 bits. The scalar counts from the interval's origin, so that what is subtracted
+/// there costs no digits.
+template <int Degree>
+void RayIntegral::Parts::accept_or_halve_precisely(const PreciseStretch<Degree>& stretch, int& budget,
+                                                   Buffers<Degree>& buffers) const {
+  const LinearInterval& interval = intervals_[stretch.interval];
+  Piece<Degree> piece{.length = static_cast<double>(stretch.length)};
+  double largest = interval.top - interval.bottom;
+  for (std::size_t j = 0; j <= Degree; ++j) {
+    double& b = piece.polynomial.coefficients[j];
+    b = static_cast<double>(stretch.polynomial.coefficients[j] - DoubleDouble(interval.origin));
+    largest = std::max(largest, std::abs(b));
+  }
+  const PieceError error{slack * (stretch.error + 2 * unit_roundoff * largest), false};
+  Stretches<Degree> eight;
+  set_stretch(eight, 0, piece.polynomial, error.signal, 0, 1, interval);
+  eight.origin[0] = 0;
+  eight.bottom[0] = interval.bottom - interval.origin;
+  eight.top[0] = interval.top - interval.origin;
+  const auto normalised = kernels<Degree>().normalise(eight);
+  auto ends = outside(interval, normalised, 0, stretch.width);
+  if (stretch.interval == stretch.first_interval && stretch.interval > 0) ends[0] = {};
+  if (stretch.interval == stretch.last_interval && stretch.interval < intervals_.knots().size()) ends[1] = {};
+  const bool is_settled = ends[0].is_settled && ends[1].is_settled;
+  if (is_settled || stretch.width <= shortest || budget <= 0 || is_noise(normalised, 0)) {
+    if (stretch.width_of_part < narrow)
+      for (Outside& end : ends)
+        if (end.share == 0)
+          end = {.share = std::min(1.0, precisely_placed / stretch.width_of_part),
+                 .extinction = interval.most_extinction,
+                 .color = interval.most_color};
+    accept(ends, piece, error, {0, 0, 1, stretch.interval}, normalised, 0, budget, buffers);
+    return;
+  }
+  --budget;
+  const auto [front, back] = stretch.polynomial.split(0.5);
+  for (const auto& polynomial : {front, back}) {
+    const DoubleDouble middle = polynomial.value(0.5);
+    const auto& knots = intervals_.knots();
+    const auto above = std::upper_bound(knots.begin(), knots.end(), middle);
+    PreciseStretch<Degree> half = stretch;
+    half.polynomial = polynomial;
+    half.length = stretch.length * 0.5;
+    half.width = stretch.width * 0.5;
+    half.interval =
+        std::clamp(static_cast<std::size_t>(above - knots.begin()), stretch.first_interval, stretch.last_interval);
+    accept_or_halve_precisely(half, budget, buffers);
+  }
+}
+
+/// Appends a stretch, whatever is outside of its interval.
+template <int Degree>
+void RayIntegral::Parts::accept(const std::array<Outside, 2>& ends, const Piece<Degree>& piece, const PieceError& error,
+                                const KnotStretch& stretch, const NormalisedStretches<Degree>& normalised,
+                                std::size_t lane, int& budget, Buffers<Degree>& buffers) const {
+  const LinearInterval& interval = intervals_[stretch.interval];
+  const bool is_settled = ends[0].is_settled && ends[1].is_settled;
+  const double width = stretch.end - stretch.begin;
+  double length = width * piece.length;
+  if (!interval.is_linear && length * interval.at_0.extinction > bottomless)
+    length = deep_enough / interval.at_0.extinction;
+  const bool is_bottomless = emission_ == Emission::associated && length * interval.most_extinction > bottomless;
   double depth_error = 0;
   double color_error = 0;
   for (const Outside& outside : ends) {
@@ -341,7 +538,11 @@ void RayIntegral::Parts::accept_or_halve(const Piece<Degree>& piece, const Piece
     const double color = interval.most_color + outside.color;
     depth_error += stretch_outside * outside.extinction;
     // Two things may be wrong: the source there, and all that is seen through the stretch.
-    if (emission_ == Emission::associated)
+    if (is_bottomless)
+      // The integral of tau T is at most 1, whatever the extinction.
+      color_error += 2 * stretch_outside * outside.extinction * color +
+                     std::min(1.0, stretch_outside * interval.most_extinction) * outside.color;
+    else if (emission_ == Emission::associated)
       color_error += stretch_outside * (2 * outside.extinction * color + interval.most_extinction * outside.color);
     else
       color_error += stretch_outside * (outside.color + length * outside.extinction * color);
@@ -677,9 +878,8 @@ void RayIntegral::Parts::add_end(const Chain<Degree>& signal, const SignalError&
   if (!(extinction <= most)) sum.doubt = std::max(sum.doubt, exponential(-sum.depth.high));
 }
 
-/// The whole ray: what the sums, an unknown end and what is hidden behind opaque matter add to the radius.
-Certified RayIntegral::Parts::finish(const Sum& sum, double length, double hidden, const SignalError& error,
-                                     double tolerance) const {
+/// The whole ray: what the sums, an unknown end and what is hidden behind opaque matter add to the errors.
+Answer RayIntegral::Parts::finish(const Sum& sum, double length, double hidden, const SignalError& error) const {
   const bool associated = emission_ == Emission::associated;
   const double most_color = intervals_.most_color();
   // The extinction has no bound where the opacity is 1; its means have one.
@@ -697,24 +897,33 @@ Certified RayIntegral::Parts::finish(const Sum& sum, double length, double hidde
   const double drift = drift_of(depth, transmittance, depth_error);
   const double most_hidden = hidden > 0 ? exponential(-opaque_depth) : 0;
 
-  Certified result;
-  result.color = sum.color + sum.color_rest;
-  result.opacity = -std::expm1(-depth);
-  const double brightest = result.color.maxCoeff();
+  Answer result;
+  result.nodes = sum.nodes;
+  result.light.color = sum.color + sum.color_rest;
+  result.light.opacity = -std::expm1(-depth);
+  const double brightest = result.light.color.maxCoeff();
   const double count = static_cast<double>(sum.pieces) + 1;
   const double summation = (2 + 2 * count * count * unit_roundoff) * unit_roundoff;
-  const double color_error = sum.color_error + summation * brightest +
-                             std::min(1.0, transmittance + drift) * end_density * error.of_length +
-                             // Two things may be wrong, anywhere on the ray: the source there, and what is seen through
-                             // it.
-                             density * (associated ? 2 : 1 + length * most_extinction) * error.unclaimed +
-                             most_hidden * (associated ? most_color : most_color * hidden) +
-                             sum.doubt * (associated ? most_color : most_color * length);
-  const double opacity_error = drift + most_hidden + sum.doubt + 4 * unit_roundoff * result.opacity;
-  result.radius = slack * std::max(color_error, opacity_error);
-  result.evaluations = static_cast<std::int64_t>(sum.nodes);
+  result.color_error =
+      sum.color_error + summation * brightest + std::min(1.0, transmittance + drift) * end_density * error.of_length +
+      // Two things may be wrong, anywhere on the ray: the source there, and what is seen through it.
+      (error.unclaimed > 0 ? density * (associated ? 2 : 1 + length * most_extinction) * error.unclaimed : 0) +
+      most_hidden * (associated ? most_color : most_color * hidden) +
+      sum.doubt * (associated ? most_color : most_color * length);
+  result.opacity_error = drift + most_hidden + sum.doubt + 4 * unit_roundoff * result.light.opacity;
+  return result;
+}
 
-  const double scale = std::max(1.0, associated ? most_color : most_color * length);
+/// The answer with one radius, of colour and opacity.
+Certified RayIntegral::Parts::certified(const Answer& answer, double length, double tolerance) const {
+  Certified result;
+  result.color = answer.light.color;
+  result.opacity = answer.light.opacity;
+  result.radius = slack * std::max(answer.color_error, answer.opacity_error);
+  result.evaluations = static_cast<std::int64_t>(answer.nodes);
+
+  const double most_color = intervals_.most_color();
+  const double scale = std::max(1.0, emission_ == Emission::associated ? most_color : most_color * length);
   // No light is brighter than this, no opacity above 1: more is known without any integral, or all is not a number.
   if (!(result.radius <= scale)) {
     result.color = Vector3<double>::Constant(0);
@@ -725,8 +934,9 @@ Certified RayIntegral::Parts::finish(const Sum& sum, double length, double hidde
   return result;
 }
 
+/// The integral in the units at hand, right as long as no number leaves the range of binary64.
 template <int Degree>
-Certified RayIntegral::Parts::integrate_ray(const Chain<Degree>& signal, const SignalError& error, double tolerance) {
+Answer RayIntegral::Parts::integrate_ray(const Chain<Degree>& signal, const SignalError& error) {
   auto& buffers = std::get<Buffers<Degree>>(buffers_);
   Sum sum;
   double hidden = 0;  // length behind what is opaque
@@ -743,7 +953,113 @@ Certified RayIntegral::Parts::integrate_ray(const Chain<Degree>& signal, const S
     }
   }
   if (intervals_.has_opaque_points()) add_end(signal, error, sum);
-  return finish(sum, signal.length(), hidden, error, tolerance);
+  return finish(sum, signal.length(), hidden, error);
+}
+
+/// What all results below 2^-1022 together may have lost. Each errs by 2^-1075 at most, and a piece takes fewer than
+/// 2^40 of them; on the way to the answer a length's is multiplied by an extinction and a colour, an extinction's by a
+/// length and a colour, and that of x, where scalars are so small that there is one, by the scale of an interval and by
+/// all of these.
+template <int Degree>
+double RayIntegral::Parts::underflow(const Chain<Degree>& signal) const {
+  constexpr double smallest = 0x1p-300;  // differences of such scalars, and their ninth powers, are far above 2^-1022
+  const double length = signal.length();
+  const double extinction = std::max(1.0, intervals_.most_extinction());
+  const double factor = 0x1p-1035 * static_cast<double>(signal.pieces.size()) * std::max(1.0, intervals_.most_color());
+  const auto is_ordinary = [](double s) { return s == 0 || std::abs(s) >= smallest; };
+  const auto& knots = intervals_.knots();
+  const bool are_ordinary = knots.back() - knots.front() <= 1 / smallest &&
+                            std::all_of(knots.begin(), knots.end(), is_ordinary) &&
+                            std::all_of(signal.pieces.begin(), signal.pieces.end(), [&](const Piece<Degree>& piece) {
+                              const auto& b = piece.polynomial.coefficients;
+                              return std::all_of(b.begin(), b.end(), is_ordinary);
+                            });
+  const double of_x = are_ordinary ? 0 : intervals_.largest_scale() * extinction * std::max(1.0, length);
+  return factor * (extinction + length + of_x);
+}
+
+/// Whether there is nothing along the ray but what lies in its unknown end, and that adds to the radius all it can.
+template <int Degree>
+bool RayIntegral::Parts::is_dark(const Chain<Degree>& signal, const SignalError& error) const {
+  const double unknown = error.of_length + error.unclaimed;
+  const double most = std::max(intervals_.most_extinction(), intervals_.most_color());
+  if (unknown > 0 && most > 0 && std::min(1.0, most) * unknown < 0x1p-900) return false;
+  for (std::size_t i = 0; i < signal.pieces.size(); ++i) {
+    const auto& b = signal.pieces[i].polynomial.coefficients;
+    const auto [low, high] = std::minmax_element(b.begin(), b.end());
+    const double reach = error.of_pieces.empty() ? 0 : error.of_pieces[i];
+    if (!intervals_.are_dark(*low - reach, *high + reach, emission_)) return false;
+  }
+  return true;
+}
+
+/// The same integral where lengths, extinctions or colours are so small or so large that their products underflow or
+/// overflow: all in units of their own, and what underflows even so is added to the errors.
+template <int Degree>
+Answer RayIntegral::Parts::integrate_in_other_units(const Chain<Degree>& signal, const SignalError& error) const {
+  const Units units = units_for(transfer_, signal.length());
+  Parts parts(in_units(transfer_, units), emission_);
+  const Chain<Degree> chain = in_units(signal, units);
+  Answer answer = parts.integrate_ray(chain, in_units(error, units));
+  const double lost = parts.underflow(chain);
+  const double brightest = answer.light.color.maxCoeff();
+  if (units.depth() != 0) {
+    // Proportional to the extinction, as `Units` says, which may have been rounded.
+    answer.color_error += 4 * unit_roundoff * brightest;
+    answer.opacity_error += 4 * unit_roundoff * answer.light.opacity;
+  }
+  const int of_color = units.color + (emission_ == Emission::associated ? units.depth() : units.length);
+  const auto upwards = [lost](double x, int exponent) {
+    // The answer is rounded once more where it is below 2^-1022.
+    return std::nextafter(std::ldexp(slack * (x + lost), exponent), HUGE_VAL) + 0x1p-1074;
+  };
+  answer.color_error = intervals_.most_color() > 0 ? upwards(answer.color_error, of_color) : 0;
+  answer.opacity_error = intervals_.most_extinction() > 0 ? upwards(answer.opacity_error, units.depth()) : 0;
+  answer.light.color = answer.light.color.unaryExpr([&](double c) { return std::ldexp(c, of_color); });
+  answer.light.opacity = std::ldexp(answer.light.opacity, units.depth());
+  return answer;
+}
+
+template <int Degree>
+Certified RayIntegral::Parts::operator()(const Chain<Degree>& signal, const SignalError& error, double tolerance) {
+  const double length = signal.length();
+  const Certified result = certified(integrate_ray(signal, error), length, tolerance);
+  const bool is_at_hand = length <= longest_at_hand && length * intervals_.most_extinction() <= deepest_at_hand;
+  if (is_at_hand && most_underflow(length, signal.pieces.size()) <= negligible_radius * result.radius) {
+    if (result.status == Status::converged || !intervals_.has_jumps() || intervals_.has_opaque_points() ||
+        !is_zero(error))
+      return result;
+    const Certified better = (*this)(precise_chain(signal), tolerance);
+    return better.radius < result.radius ? better : result;
+  }
+  if (is_dark(signal, error)) return result;
+  return certified(integrate_in_other_units(signal, error), length, tolerance);
+}
+
+template <int Degree>
+Certified RayIntegral::Parts::operator()(const PreciseChain<Degree>& signal, double tolerance) {
+  // Where the opacity is 1 a chain in binary64 is looked at in pairs of numbers anyway.
+  if (intervals_.has_opaque_points()) {
+    const auto [chain, error] = rounded(signal);
+    return certified(integrate_ray(chain, error), chain.length(), tolerance);
+  }
+  auto& buffers = std::get<Buffers<Degree>>(buffers_);
+  const auto length = static_cast<double>(signal.length);
+  Sum sum;
+  double hidden = 0;
+  for (std::size_t piece = 0; piece < signal.pieces.size(); ++piece) {
+    fit_precisely(signal.pieces[piece], buffers);
+    integrate_pieces(buffers, sum);
+    if (!sum.is_opaque() || piece + 1 == signal.pieces.size()) continue;
+    hidden = length;
+    break;
+  }
+  Answer answer =
+      finish(sum, length, hidden, {.of_pieces = {}, .of_length = signal.of_length, .unclaimed = signal.unclaimed});
+  const double lost = most_underflow(length, signal.pieces.size());
+  answer.color_error += lost;
+  answer.opacity_error += lost;
+  return certified(answer, length, tolerance);
 }
 
 RayIntegral::RayIntegral(const PiecewiseLinear& transfer, Emission emission)
@@ -759,10 +1075,17 @@ RayIntegral& RayIntegral::operator=(RayIntegral&&) noexcept = default;
 
 template <int Degree>
 Certified RayIntegral::operator()(const Chain<Degree>& signal, const SignalError& error, double tolerance) {
-  return parts_->integrate_ray(signal, error, tolerance);
+  return (*parts_)(signal, error, tolerance);
+}
+
+template <int Degree>
+Certified RayIntegral::operator()(const PreciseChain<Degree>& signal, double tolerance) {
+  return (*parts_)(signal, tolerance);
 }
 
 template Certified RayIntegral::operator()(const Chain<3>&, const SignalError&, double);
 template Certified RayIntegral::operator()(const Chain<largest_degree>&, const SignalError&, double);
+template Certified RayIntegral::operator()(const PreciseChain<3>&, double);
+template Certified RayIntegral::operator()(const PreciseChain<largest_degree>&, double);
 
 }  // namespace raytruth

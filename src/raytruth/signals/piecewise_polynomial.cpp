@@ -19,16 +19,40 @@ double binomial(std::size_t n, std::size_t k) {
   return boost::math::binomial_coefficient<double>(static_cast<unsigned>(n), static_cast<unsigned>(k));
 }
 
+/// A number as fraction 2^exponent.
+struct Scaled {
+  DoubleDouble fraction;
+  int exponent = 0;
+};
+
+DoubleDouble times_power_of_2(const DoubleDouble& x, int exponent) {
+  return {std::ldexp(x.high, exponent), std::ldexp(x.low, exponent)};
+}
+
+/// With 1/2 <= |fraction| < 1, so that products of ten of them are far from the ends of binary64's range.
+Scaled scaled(const DoubleDouble& x) {
+  int exponent = 0;
+  static_cast<void>(std::frexp(x.high, &exponent));
+  return {times_power_of_2(x, -exponent), exponent};
+}
+
 /// See the header for the formula. Each sum is off by less than 2^-96 sum_k |a_k| length^k: no weight is above 1, and a
-/// term has passed through at most 22 operations.
+/// term has passed through at most 22 operations; and by less than 2^-1060 where a term is that small. A power of the
+/// length may be far smaller or larger than binary64 holds while its term is not.
 Bernstein<largest_degree, DoubleDouble> bernstein_from_powers(const std::vector<double>& coefficients,
                                                               const DoubleDouble& length) {
   Bernstein<largest_degree, DoubleDouble> result;
-  DoubleDouble power = 1.0;
+  const Scaled unit = scaled(length);
+  Scaled power{1.0};
   for (std::size_t k = 0; k < coefficients.size(); ++k) {
-    const DoubleDouble term = power * coefficients[k] / binomial(largest_degree, k);
-    for (std::size_t i = k; i <= largest_degree; ++i) result.coefficients[i] += term * binomial(i, k);
-    power = power * length;
+    if (coefficients[k] != 0) {
+      const Scaled coefficient = scaled(coefficients[k]);
+      const int exponent = power.exponent + coefficient.exponent;
+      const DoubleDouble term = power.fraction * coefficient.fraction.high / binomial(largest_degree, k);
+      for (std::size_t i = k; i <= largest_degree; ++i)
+        result.coefficients[i] += times_power_of_2(term * binomial(i, k), exponent);
+    }
+    power = {power.fraction * unit.fraction, power.exponent + unit.exponent};
   }
   return result;
 }
@@ -73,6 +97,9 @@ Chain<largest_degree> piecewise_polynomial(const std::vector<double>& breaks,
 
 namespace {
 
+constexpr double noise = 0x1p-96;
+constexpr double upwards = 1 + 0x1p-46;
+
 /// Whether a polynomial in powers of x, on [0, length], has exactly these values at its two ends.
 bool has_ends(const std::vector<double>& coefficients, double length, double begin, double end) {
   using boost::multiprecision::cpp_rational;
@@ -87,8 +114,6 @@ bool has_ends(const std::vector<double>& coefficients, double length, double beg
 SignalError piecewise_polynomial_error(const std::vector<double>& breaks,
                                        const std::vector<std::vector<double>>& coefficients,
                                        const Chain<largest_degree>& chain) {
-  constexpr double noise = 0x1p-96;
-  constexpr double upwards = 1 + 0x1p-46;
   SignalError error{.of_pieces = {}, .of_length = std::abs(static_cast<double>(chain.end - breaks.back()))};
   for (std::size_t i = 0; i < coefficients.size(); ++i) {
     const auto& piece = chain.pieces[i];
@@ -117,6 +142,23 @@ SignalError piecewise_polynomial_error(const std::vector<double>& breaks,
                               (difference + stretch + noise * magnitude + std::numeric_limits<double>::min()));
   }
   return error;
+}
+
+PreciseChain<largest_degree> precise_piecewise_polynomial(const std::vector<double>& breaks,
+                                                          const std::vector<std::vector<double>>& coefficients) {
+  PreciseChain<largest_degree> result{.pieces = {}, .length = breaks.back()};
+  for (std::size_t i = 0; i < coefficients.size(); ++i) {
+    const DoubleDouble length = two_sum(breaks[i + 1], -breaks[i]);
+    double magnitude = 0;
+    for (std::size_t k = coefficients[i].size(); k-- > 0;)
+      magnitude = magnitude * length.high + std::abs(coefficients[i][k]);
+    result.pieces.push_back({.length = length.high,
+                             .polynomial = bernstein_from_powers(coefficients[i], length),
+                             .error = upwards * (noise * magnitude + std::numeric_limits<double>::min()),
+                             .powers = coefficients[i],
+                             .extent = length});
+  }
+  return result;
 }
 
 }  // namespace raytruth

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "raytruth/core/chain.hpp"
+#include "raytruth/signals/precise_chain.hpp"
 #include "raytruth/signals/signal_error_bound.hpp"
 
 #include <vector>
@@ -26,5 +27,9 @@ Chain<largest_degree> piecewise_polynomial(const std::vector<double>& breaks,
 SignalError piecewise_polynomial_error(const std::vector<double>& breaks,
                                        const std::vector<std::vector<double>>& coefficients,
                                        const Chain<largest_degree>& chain);
+
+/// The polynomials of the binary64 numbers in 106 bits, exact ones beside them.
+PreciseChain<largest_degree> precise_piecewise_polynomial(const std::vector<double>& breaks,
+                                                          const std::vector<std::vector<double>>& coefficients);
 
 }  // namespace raytruth

@@ -34,6 +34,9 @@ class TrilinearField {
                                   const RayDisplacement& displacement = {}) const {
     return trilinear_error(*voxels_, ray, chain, is_needless, displacement, border_);
   }
+  [[nodiscard]] PreciseChain<3> trace_precisely(const Ray& ray, const RayDisplacement& displacement = {}) const {
+    return trace_trilinear_precisely(*voxels_, ray, displacement, border_);
+  }
 
  private:
   const Grid* voxels_;
@@ -62,6 +65,9 @@ class TricubicField {
   [[nodiscard]] SignalError error(const Ray& ray, const Chain<9>& chain, const std::vector<bool>& is_needless = {},
                                   const RayDisplacement& displacement = {}) const {
     return tricubic_error(grid(), kernel(), ray, chain, coefficient_error_, is_needless, displacement, border_);
+  }
+  [[nodiscard]] PreciseChain<9> trace_precisely(const Ray& ray, const RayDisplacement& displacement = {}) const {
+    return trace_tricubic_precisely(grid(), kernel(), ray, coefficient_error_, displacement, border_);
   }
 
  private:

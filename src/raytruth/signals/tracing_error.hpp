@@ -5,6 +5,7 @@
 #include "raytruth/core/double_double4.hpp"
 #include "raytruth/signals/border.hpp"
 #include "raytruth/signals/cell_walk.hpp"
+#include "raytruth/signals/precise_chain.hpp"
 #include "raytruth/signals/ray.hpp"
 #include "raytruth/signals/ray_displacement.hpp"
 #include "raytruth/signals/signal_error_bound.hpp"
@@ -129,6 +130,88 @@ struct Reconstruction {
   double slope;         ///< bounds |df/dx| in units of the largest difference of neighbouring voxels along x
 };
 
+/// What is known of the voxels around a segment of a line, and what follows from that.
+struct SegmentVoxels {
+  /// The bounds of `tracing_error` need all voxels of the cells that the segment reaches.
+  SegmentVoxels(const Grid& its_grid, const ExactLine& its_line, const ExactSegment& its_segment,
+                const Reconstruction& its_reconstruction, const std::array<double, 3>& its_displacement)
+      : grid(its_grid),
+        line(its_line),
+        segment(its_segment),
+        reconstruction(its_reconstruction),
+        displacement(its_displacement),
+        reached(voxels(segment.before, segment.behind, {})) {}
+
+  /// Whether the scalar is `value`, exactly, in the cell. The last voxels along an axis have no weight where the line
+  /// stays at the first of the cell.
+  [[nodiscard]] bool are_all(double value) const { return that_count({}, {}).are_all(value); }
+
+  /// Where it is: for how long the line may be among other voxels all the same.
+  [[nodiscard]] double elsewhere(double value, const RayDisplacement& of_ray) const {
+    if (that_count(segment.before, segment.behind).are_all(value)) return 0;
+    double result = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double beyond = segment.before[axis] + segment.behind[axis];
+      const double speed = std::abs(line.direction[axis]) - line.norm.high * of_ray.per_voxel[axis];
+      if (beyond > 0)
+        result += speed > 0 ? upwards * line.norm.high * beyond / speed : std::numeric_limits<double>::infinity();
+    }
+    return result;
+  }
+
+  /// How far the polynomial of the cell, exact for the segment, may be from the scalar.
+  [[nodiscard]] double error() const {
+    constexpr double value_noise = 0x1p-92;
+    double misplaced = 0;
+    double growth = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double overshoot = std::max(segment.before[axis], segment.behind[axis]);
+      misplaced += (segment.noise[axis] + 2 * overshoot) * reconstruction.slope * reached.difference[axis];
+      growth *= 1 + 2 * overshoot;
+    }
+    return growth * growth * growth * (misplaced + value_noise * reached.magnitude);
+  }
+
+  // It makes up for the rounding of the bounds themselves, sums of some twenty terms >= 0.
+  static constexpr double upwards = 1 + 0x1p-46;
+
+ private:
+  [[nodiscard]] ReachedVoxels voxels(const std::array<double, 3>& before, const std::array<double, 3>& behind,
+                                     const std::array<bool, 3>& is_at_first) const {
+    std::array<std::int64_t, 3> first = segment.cell.cell;
+    std::array<std::int64_t, 3> last = segment.cell.cell;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      first[axis] -= reconstruction.margin + static_cast<std::int64_t>(std::ceil(before[axis]));
+      last[axis] +=
+          (is_at_first[axis] ? 0 : 1) + reconstruction.margin + static_cast<std::int64_t>(std::ceil(behind[axis]));
+    }
+    return {grid, first, last};
+  }
+  [[nodiscard]] ReachedVoxels that_count(const std::array<double, 3>& before,
+                                         const std::array<double, 3>& behind) const {
+    std::array<bool, 3> is_at_first{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      is_at_first[axis] = line.direction[axis] == 0 && displacement[axis] == 0 &&
+                          segment.cell.begin[axis] == DoubleDouble(0) && segment.cell.end[axis] == DoubleDouble(0);
+    return voxels(before, behind, is_at_first);
+  }
+
+  const Grid& grid;
+  const ExactLine& line;
+  const ExactSegment& segment;
+  const Reconstruction& reconstruction;
+  const std::array<double, 3>& displacement;
+  ReachedVoxels reached;
+};
+
+/// How far the ray that is meant may be from the one at hand, t voxels behind the entry.
+inline std::array<double, 3> displacement_at(const RayDisplacement& displacement, double t) {
+  std::array<double, 3> result{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    result[axis] = displacement.at_entry[axis] + t * displacement.per_voxel[axis];
+  return result;
+}
+
 /// Bounds on |s(t) - chain(t)|, s(t) = f(x(t)) the clamped reconstruction f along the ray at its exact direction,
 /// however the chain was made. `exact(segment)` gives the Bernstein coefficients of f in a cell, rounded by less than
 /// 2^-92 of the largest voxel.
@@ -154,10 +237,7 @@ template <int Degree, class Exact>
 SignalError tracing_error(const Grid& grid, Border border, const Ray& ray, const Chain<Degree>& chain,
                           const Reconstruction& reconstruction, const std::vector<bool>& is_needless,
                           const RayDisplacement& displacement, Exact&& exact) {
-  constexpr double value_noise = 0x1p-92;
-  // It makes up for the rounding of the bounds themselves, sums of some twenty terms >= 0.
-  constexpr double upwards = 1 + 0x1p-46;
-
+  constexpr double upwards = SegmentVoxels::upwards;
   const ExactLine line(grid.size, border, ray);
   SignalError error{.of_pieces = {}, .of_length = line.length_error(chain.end) + displacement.of_length};
   error.of_pieces.reserve(chain.pieces.size());
@@ -171,32 +251,13 @@ SignalError tracing_error(const Grid& grid, Border border, const Ray& ray, const
       error.of_pieces.push_back(0);
       continue;
     }
-    std::array<double, 3> displaced{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      displaced[axis] = displacement.at_entry[axis] + chain.end_of(i).high * displacement.per_voxel[axis];
+    const std::array<double, 3> displaced = displacement_at(displacement, chain.end_of(i).high);
     const ExactSegment segment(line, lambda_begin, lambda_end, displaced);
-    const auto voxels = [&](const std::array<double, 3>& before, const std::array<double, 3>& behind) {
-      std::array<std::int64_t, 3> first = segment.cell.cell;
-      std::array<std::int64_t, 3> last = segment.cell.cell;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        first[axis] -= reconstruction.margin + static_cast<std::int64_t>(std::ceil(before[axis]));
-        last[axis] += 1 + reconstruction.margin + static_cast<std::int64_t>(std::ceil(behind[axis]));
-      }
-      return ReachedVoxels(grid, first, last);
-    };
-    const ReachedVoxels reached = voxels(segment.before, segment.behind);
+    const SegmentVoxels voxels(grid, line, segment, reconstruction, displaced);
     double step = 0;
     for (std::size_t k = 0; k < Degree; ++k) step = std::max(step, std::abs(b[k + 1] - b[k]));
-    if (step == 0 && voxels({}, {}).are_all(b[0])) {
-      double elsewhere = 0;  // how long x(t) may be among other voxels
-      if (!reached.are_all(b[0]))
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          const double beyond = segment.before[axis] + segment.behind[axis];
-          const double speed = std::abs(line.direction[axis]) - line.norm.high * displacement.per_voxel[axis];
-          if (beyond > 0)
-            elsewhere +=
-                speed > 0 ? upwards * line.norm.high * beyond / speed : std::numeric_limits<double>::infinity();
-        }
+    if (step == 0 && voxels.are_all(b[0])) {
+      const double elsewhere = voxels.elsewhere(b[0], displacement);
       if (elsewhere <= piece.length) {
         error.of_pieces.push_back(0);
         error.unclaimed += elsewhere;
@@ -208,20 +269,57 @@ SignalError tracing_error(const Grid& grid, Border border, const Ray& ray, const
     double difference = 0;
     for (std::size_t k = 0; k <= Degree; ++k)
       difference = std::max(difference, std::abs(static_cast<double>(truth.coefficients[k] - b[k])));
-    double displacement = 0;
-    double growth = 1;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double overshoot = std::max(segment.before[axis], segment.behind[axis]);
-      displacement += (segment.noise[axis] + 2 * overshoot) * reconstruction.slope * reached.difference[axis];
-      growth *= 1 + 2 * overshoot;
-    }
     const double other_length = std::abs(static_cast<double>(chain.end_of(i) - piece.start - piece.length));
     const double stretch = Degree * step * other_length / piece.length;
-    error.of_pieces.push_back(upwards * (difference + stretch +
-                                         growth * growth * growth * (displacement + value_noise * reached.magnitude) +
-                                         std::numeric_limits<double>::min()));
+    error.of_pieces.push_back(upwards * (difference + stretch + voxels.error() + std::numeric_limits<double>::min()));
   }
   return error;
+}
+
+/// The ray at its exactly normalised direction in 106 bits, cut at the borders of cells as a chain is. Bounds as those
+/// of `tracing_error`, of which only those of 106 bits are left, and the displacement.
+template <int Degree, class Exact>
+PreciseChain<Degree> trace_precisely(const Grid& grid, Border border, const Ray& ray,
+                                     const Reconstruction& reconstruction, const RayDisplacement& displacement,
+                                     Exact&& exact) {
+  const ExactLine line(grid.size, border, ray);
+  PreciseChain<Degree> chain;
+  if (!(line.inside.begin < line.inside.end) || ray.length == 0) return chain;
+  DoubleDouble way = line.inside.end - line.inside.begin;
+  if (std::isfinite(ray.length)) way = std::min(way, line.inverse_norm * ray.length);
+  // As in `trace_cells`.
+  const double tie = 0x1p-98 * (std::abs(line.inside.begin.high) + way.high);
+  CellWalk walk(grid.size, line.origin, line.direction, line.inside.begin);
+  DoubleDouble begin;
+  while (begin < way) {
+    const DoubleDouble end = std::min(walk.crossing(), way);
+    walk.finish(end, tie);
+    if (static_cast<double>(end - begin) > tie) {
+      const std::array<double, 3> displaced = displacement_at(displacement, static_cast<double>(end * line.norm));
+      const ExactSegment segment(line, line.inside.begin + begin, line.inside.begin + end, displaced);
+      const SegmentVoxels voxels(grid, line, segment, reconstruction, displaced);
+      auto& piece = chain.pieces.emplace_back();
+      const DoubleDouble length = (end - begin) * line.norm;
+      piece.length = static_cast<double>(length);
+      piece.polynomial = exact(segment.cell);
+      piece.error = SegmentVoxels::upwards * (voxels.error() + std::numeric_limits<double>::min());
+      const DoubleDouble first = piece.polynomial.coefficients[0];
+      if (first.low == 0 && voxels.are_all(first.high)) {
+        const double elsewhere = voxels.elsewhere(first.high, displacement);
+        if (elsewhere <= piece.length) {
+          piece.polynomial.coefficients.fill(first);
+          piece.error = 0;
+          chain.unclaimed += elsewhere;
+        }
+      }
+      chain.length += length;
+      begin = end;
+    }
+    if (end == way) break;
+    walk.advance();
+  }
+  chain.of_length = line.length_error(chain.length) + displacement.of_length;
+  return chain;
 }
 
 }  // namespace raytruth

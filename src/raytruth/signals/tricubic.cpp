@@ -125,6 +125,12 @@ void prefilter_line(double* values, std::int64_t count, std::int64_t stride, std
   for (std::int64_t i = count - 2; i >= 0; --i) at(i) -= upper[static_cast<std::size_t>(i)] * at(i + 1);
 }
 
+/// The derivative of a B-spline is a mean of differences. Bernstein coefficients of a Catmull-Rom cubic are sums of
+/// voxels with weights of magnitude 4/3 in all, those of its derivative sums of differences with 3: (4/3)^2 3.
+Reconstruction tricubic(CubicKernel kernel) {
+  return {.margin = 1, .slope = kernel == CubicKernel::bspline ? 1 : 16.0 / 3};
+}
+
 }  // namespace
 
 RAYTRUTH_DISPATCH
@@ -139,14 +145,21 @@ SignalError tricubic_error(const Grid& grid, CubicKernel kernel, const Ray& ray,
                            double coefficient_error, const std::vector<bool>& is_needless,
                            const RayDisplacement& displacement, Border border) {
   const auto matrix = kernel_matrix<DoubleDouble>(kernel);
-  // The derivative of a B-spline is a mean of differences. Bernstein coefficients of a Catmull-Rom cubic are sums of
-  // voxels with weights of magnitude 4/3 in all, those of its derivative sums of differences with 3: (4/3)^2 3.
-  const Reconstruction tricubic{.margin = 1, .slope = kernel == CubicKernel::bspline ? 1 : 16.0 / 3};
   SignalError error =
-      tracing_error(grid, border, ray, chain, tricubic, is_needless, displacement,
+      tracing_error(grid, border, ray, chain, tricubic(kernel), is_needless, displacement,
                     [&](const CellSegment<DoubleDouble>& segment) { return cell_polynomial(grid, matrix, segment); });
   for (double& of_piece : error.of_pieces) of_piece += coefficient_error;
   return error;
+}
+
+PreciseChain<9> trace_tricubic_precisely(const Grid& grid, CubicKernel kernel, const Ray& ray, double coefficient_error,
+                                         const RayDisplacement& displacement, Border border) {
+  const auto matrix = kernel_matrix<DoubleDouble>(kernel);
+  auto chain = trace_precisely<9>(
+      grid, border, ray, tricubic(kernel), displacement,
+      [&](const CellSegment<DoubleDouble>& segment) { return cell_polynomial(grid, matrix, segment); });
+  for (auto& piece : chain.pieces) piece.error += coefficient_error;
+  return chain;
 }
 
 Grid bspline_coefficients(const Grid& grid) {

@@ -2,6 +2,7 @@
 
 #include "raytruth/core/chain.hpp"
 #include "raytruth/signals/border.hpp"
+#include "raytruth/signals/precise_chain.hpp"
 #include "raytruth/signals/ray.hpp"
 #include "raytruth/signals/ray_displacement.hpp"
 #include "raytruth/signals/signal_error_bound.hpp"
@@ -46,6 +47,10 @@ void trace_tricubic(const Grid& grid, CubicKernel kernel, const Ray& ray, Chain<
 SignalError tricubic_error(const Grid& grid, CubicKernel kernel, const Ray& ray, const Chain<9>& chain,
                            double coefficient_error = 0, const std::vector<bool>& is_needless = {},
                            const RayDisplacement& displacement = {}, Border border = Border::half_voxel);
+
+/// As `trace_trilinear_precisely`, `coefficient_error` as above.
+PreciseChain<9> trace_tricubic_precisely(const Grid& grid, CubicKernel kernel, const Ray& ray, double coefficient_error,
+                                         const RayDisplacement& displacement = {}, Border border = Border::half_voxel);
 
 /// The coefficients of the cubic B-spline that passes through the voxels of a clamped grid: on every line the
 /// tridiagonal system (c_{i-1} + 4 c_i + c_{i+1}) / 6 = v_i with c_{-1} = c_0, c_n = c_{n-1}, axis after axis (M.

@@ -98,6 +98,8 @@ Bernstein<3, DoubleDouble> cell_cubic(const Grid& grid, const CellSegment<Double
   return {{ends[0], inner[0], inner[1], ends[1]}};
 }
 
+constexpr Reconstruction trilinear{.margin = 0, .slope = 1};
+
 }  // namespace
 
 RAYTRUTH_DISPATCH
@@ -115,9 +117,14 @@ Chain<3> trace_trilinear(const Grid& grid, const Ray& ray, Border border) {
 RAYTRUTH_DISPATCH
 SignalError trilinear_error(const Grid& grid, const Ray& ray, const Chain<3>& chain,
                             const std::vector<bool>& is_needless, const RayDisplacement& displacement, Border border) {
-  const Reconstruction trilinear{.margin = 0, .slope = 1};
   return tracing_error(grid, border, ray, chain, trilinear, is_needless, displacement,
                        [&grid](const CellSegment<DoubleDouble>& segment) { return cell_cubic(grid, segment); });
+}
+
+PreciseChain<3> trace_trilinear_precisely(const Grid& grid, const Ray& ray, const RayDisplacement& displacement,
+                                          Border border) {
+  return trace_precisely<3>(grid, border, ray, trilinear, displacement,
+                            [&grid](const CellSegment<DoubleDouble>& segment) { return cell_cubic(grid, segment); });
 }
 
 }  // namespace raytruth

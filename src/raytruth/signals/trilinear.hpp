@@ -2,6 +2,7 @@
 
 #include "raytruth/core/chain.hpp"
 #include "raytruth/signals/border.hpp"
+#include "raytruth/signals/precise_chain.hpp"
 #include "raytruth/signals/ray.hpp"
 #include "raytruth/signals/ray_displacement.hpp"
 #include "raytruth/signals/signal_error_bound.hpp"
@@ -38,5 +39,10 @@ Chain<3> trace_trilinear(const Grid& grid, const Ray& ray, Border border = Borde
 SignalError trilinear_error(const Grid& grid, const Ray& ray, const Chain<3>& chain,
                             const std::vector<bool>& is_needless = {}, const RayDisplacement& displacement = {},
                             Border border = Border::half_voxel);
+
+/// The ray at its exactly normalised direction in 106 bits, in some ten times the chain's time: at any distance of its
+/// origin, and whatever is added to all voxels. Refusals are those of `trace_trilinear`.
+PreciseChain<3> trace_trilinear_precisely(const Grid& grid, const Ray& ray, const RayDisplacement& displacement = {},
+                                          Border border = Border::half_voxel);
 
 }  // namespace raytruth

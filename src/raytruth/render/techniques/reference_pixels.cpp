@@ -48,7 +48,8 @@ class ReferencePixels {
     error.unclaimed *= pixel.length_unit;
     take_out_clear_pieces(error);
     scale_lengths(chain_, pixel.length_unit);
-    const Certified truth = integrate_(chain_, error, tolerance_);
+    Certified truth = integrate_(chain_, error, tolerance_);
+    if (truth.status == Status::not_converged) look_closer(pixel, error, truth);
     return {truth.rgba(), truth.radius, truth.status};
   }
 
@@ -63,6 +64,20 @@ class ReferencePixels {
   [[nodiscard]] bool enters(const Ray& ray) const {
     const Span inside = clip(field_.grid().size, field_.border(), ray.origin, ray.direction);
     return inside.begin < inside.end;
+  }
+  /// The same ray in 106 bits, if much of what is unknown of it is rounding.
+  void look_closer(const PixelRay& pixel, const SignalError& error, Certified& truth) {
+    PreciseChain<Field::degree> signal = field_.trace_precisely(pixel.ray, pixel.displacement);
+    const double at_hand =
+        error.of_pieces.empty() ? 0 : *std::max_element(error.of_pieces.begin(), error.of_pieces.end());
+    if (!(signal.largest_error() < at_hand / 4)) return;
+    for (auto& piece : signal.pieces) piece.length *= pixel.length_unit;
+    signal.length = signal.length * pixel.length_unit;
+    signal.of_length *= pixel.length_unit;
+    signal.unclaimed *= pixel.length_unit;
+    if (pixel.displacement.may_differ_in_all) signal.of_length = std::numeric_limits<double>::infinity();
+    const Certified closer = integrate_(signal, tolerance_);
+    if (closer.radius < truth.radius) truth = closer;
   }
   void take_out_clear_pieces(SignalError& error) {
     std::size_t kept = 0;
