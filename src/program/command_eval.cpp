@@ -84,7 +84,9 @@ const Command eval_command{
     .notes =
         "The reference of rays, of slabs and of scenes without light is certified: `error_bound` is "
         "proven. That of lit\n"
-        "scenes is an estimate: `measured_radius`.",
+        "scenes is an estimate: `measured_radius`. Rays through volumes and scenes state where the volume\n"
+        "ends, their \"border\": \"half_voxel\" beyond the outermost centres (the default) or at the\n"
+        "\"voxel_centres\".",
     .describe = describe};
 
 }  // namespace raytruth

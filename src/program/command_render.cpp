@@ -134,7 +134,11 @@ const Command render_command{
         "estimate: the radius is\n"
         "measured, not proven, and for rays as rounded to binary64. A .png has no bound. "
         "Where a scene has no\n"
-        "camera, one is fitted around the volume and stated.",
+        "camera, one is fitted around the volume and stated.\n"
+        "\n"
+        "Where the volume ends is a convention, which a scene's \"border\" says and the answer states:\n"
+        "\"half_voxel\" (the default), half a voxel beyond the centres of its outermost voxels, or\n"
+        "\"voxel_centres\", at these centres, as VTK's mappers and Teem have it.",
     .describe = describe};
 
 }  // namespace raytruth

@@ -137,6 +137,11 @@ class Images(ProgramTest):
             done = self.run_program("render", self.write("scene.json", {**SCENE, "border": wrong}), "-o", "image.npy")
             self.assert_refused(done, "scene.json: /border: found ")
 
+    def test_help_says_so(self):
+        for command in ("render", "eval"):
+            for word in ("border", "half_voxel", "voxel_centres"):
+                self.assertIn(word, self.output_of(command, "--help"))
+
     def test_scene_for_eval(self):
         for border in ("half_voxel", "voxel_centres"):
             answer = self.json_of("eval", "-", stdin={**SCENE, "border": border, "scheme": "cell_cubic"})
