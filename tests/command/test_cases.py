@@ -1,8 +1,10 @@
 """The cases of tests/cases: each folder has small inputs, and in `expect` what must become of them."""
 
 import json
+import re
 import shutil
 import unittest
+from decimal import Decimal
 
 from support import SOURCE, ProgramTest
 
@@ -284,7 +286,72 @@ PRESETS = {
 }
 
 
-CHECKS = {**FILES, **IMAGES, **PRESETS}
+# --- rays of any size ---
+
+
+def exact_values(case):
+    """Red, green, blue and opacity as `expect` has them, in some 45 digits."""
+    text = (case.folder / "expect").read_text().split("[red green blue opacity", 1)[1].split(";")[0]
+    return [Decimal(number) for number in re.findall(r"\d[\d.e+-]*", re.sub(r"\+/- [\d.e+-]*", "", text))]
+
+
+def encloses(relative):
+    """Every exact value lies within the bound, and the bound is this small against the largest."""
+
+    def check(case):
+        reference = case.json_of("eval", "case.json")["reference"]
+        exact = exact_values(case)
+        case.assertEqual(len(exact), 4)
+        bound = Decimal(reference["error_bound"])
+        for found, right in zip([*reference["color"], reference["opacity"]], exact, strict=True):
+            case.assertLessEqual(abs(Decimal(found) - right), bound)
+        case.assertGreater(bound, 0)
+        case.assertLess(bound, Decimal(relative) * max(exact))
+
+    return check
+
+
+def answers(color, opacity, largest_bound):
+    def check(case):
+        reference = case.json_of("eval", "case.json")["reference"]
+        case.assertNotIn("status", reference)
+        case.assertLess(reference["error_bound"], largest_bound)
+        for found, right in zip([*reference["color"], reference["opacity"]], [*color, opacity], strict=True):
+            case.assertLessEqual(abs(found - right), reference["error_bound"] + 1e-16)
+
+    return check
+
+
+def flat_on_a_jump(case):
+    answer = json.loads(case.output_of("render", "scene.json", "-o", "o.npy"))
+    case.assertEqual(answer["not_converged"], 0)
+    case.assertLess(answer["error_bound"], 1e-7)  # of the file, in binary32
+    opacities = struct.unpack("<12f", (case.folder / "o.npy").read_bytes()[-48:])[3::4]
+    case.assertAlmostEqual(opacities[1], 0.99, places=6)
+
+
+SIZES = {
+    "bound_color_subnormal_plain": encloses("1e-12"),
+    "bound_len_3pieces_subnormal": encloses("1e-13"),
+    "bound_subnormal_length": encloses("1e-13"),
+    "bound_tau_small_linear": encloses("1e-12"),
+    "bound_tau_subnormal": encloses("1e-2"),  # binary64 has no closer number
+    "bound_underflow_deg5": encloses("1e-13"),
+    "bound_underflow_digits": encloses("1e-12"),
+    "bound_underflow_to_zero": encloses("1e-12"),
+    "flat_on_a_jump": flat_on_a_jump,
+    # The fourth power touches the jump and goes back: extinction 1 throughout.
+    "wide_contact_order_4_at_jump": answers([x * -math.expm1(-1) for x in (0.1, 0.2, 0.3)], -math.expm1(-1), 1e-14),
+    "wide_homogeneous_depth_1e15": answers([0.3, 0.6, 0.9], 1, 1e-14),
+    # The mean scalar of the light is 1e-13 beyond the jump: the colour there, 2e-13 on the way from one to the other.
+    "wide_jump_to_1e13": answers([0.3 + 1.2e-13, 0.6, 0.9 - 1.2e-13], 1, 1e-13),
+    "wide_refused_1e35_constant": answers([0.5, 0.25, 0.125], 1, 1e-13),
+    # Three voxels of the right-hand value: 1 - exp(-9).
+    "wide_voxel_row_constant_at_jump": answers([x * -math.expm1(-9) for x in (0.9, 0.6, 0.1)], -math.expm1(-9), 1e-14),
+}
+
+
+CHECKS = {**FILES, **IMAGES, **PRESETS, **SIZES}
 
 
 class Cases(Case):
