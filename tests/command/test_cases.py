@@ -1,8 +1,10 @@
 """The cases of tests/cases: each folder has small inputs, and in `expect` what must become of them."""
 
 import json
+import math
 import re
 import shutil
+import struct
 import unittest
 from decimal import Decimal
 

@@ -468,7 +468,7 @@ void RayIntegral::Parts::fit_precisely(const PrecisePiece<Degree>& piece, Buffer
   }
 }
 
-/// The same as `accept_or_halve` in 106 bits. The scalar counts from the interval's origin, so that what is subtracted
+/// Does what `accept_or_halve` does, in 106 bits. The scalar counts from the interval's origin, so that what is subtracted
 /// there costs no digits.
 template <int Degree>
 void RayIntegral::Parts::accept_or_halve_precisely(const PreciseStretch<Degree>& stretch, int& budget,
@@ -993,7 +993,7 @@ bool RayIntegral::Parts::is_dark(const Chain<Degree>& signal, const SignalError&
   return true;
 }
 
-/// The same integral where lengths, extinctions or colours are so small or so large that their products underflow or
+/// Integrates where lengths, extinctions or colours are so small or so large that their products underflow or
 /// overflow: all in units of their own, and what underflows even so is added to the errors.
 template <int Degree>
 Answer RayIntegral::Parts::integrate_in_other_units(const Chain<Degree>& signal, const SignalError& error) const {

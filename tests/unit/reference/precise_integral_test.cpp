@@ -164,13 +164,13 @@ TEST(PreciseIntegral, VoxelOffsetsCostNoDigits) {
   const Ray ray{.origin = {-1, 0.3, 0.7}, .direction = {1, 0.31, 0.27}};
   for (const FieldKind kind : {FieldKind::trilinear, FieldKind::bspline, FieldKind::catmull_rom}) {
     const Grid plain = eighths(0);
-    const Certified usual =
-        std::visit([&](const auto& field) { return truth_of(field, ray, jagged(0)); }, ray_field(plain, kind));
+    const Certified usual = std::visit([&](const auto& field) { return truth_of(field, ray, jagged(0)); },
+                                       ray_field(plain, kind, Border::half_voxel));
     for (const double offset : {0x1p10, 0x1p20, 0x1p30}) {
       SCOPED_TRACE(offset);
       const Grid shifted = eighths(offset);
-      const Certified answer =
-          std::visit([&](const auto& field) { return truth_of(field, ray, jagged(offset)); }, ray_field(shifted, kind));
+      const Certified answer = std::visit([&](const auto& field) { return truth_of(field, ray, jagged(offset)); },
+                                          ray_field(shifted, kind, Border::half_voxel));
       EXPECT_LE(answer.radius, 1e-12);
       EXPECT_LE(difference_in_radii(answer, usual), 1) << text(answer) << "\n" << text(usual);
     }
@@ -185,7 +185,8 @@ TEST(PreciseIntegral, FarOriginsCostNoDigits) {
     const auto answer_from = [&](double distance) {
       Ray ray{.origin = {2, 1.75, 1.625}, .direction = direction};
       for (std::size_t axis = 0; axis < 3; ++axis) ray.origin[axis] -= distance * direction[axis];
-      return std::visit([&](const auto& field) { return truth_of(field, ray, jagged(0)); }, ray_field(grid, kind));
+      return std::visit([&](const auto& field) { return truth_of(field, ray, jagged(0)); },
+                        ray_field(grid, kind, Border::half_voxel));
     };
     const Certified usual = answer_from(8);
     for (const double distance : {0x1p10, 0x1p20, 0x1p30}) {

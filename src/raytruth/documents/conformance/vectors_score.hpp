@@ -30,7 +30,7 @@ struct AnswerScore {
   double color_digits = 0;
   double opacity_digits = 0;
 
-  // Of colour and opacity the worse one.
+  // The worse one of colour and opacity.
   [[nodiscard]] double digits() const { return std::min(color_digits, opacity_digits); }
   [[nodiscard]] double error() const { return std::max(color_error, opacity_error); }
 };

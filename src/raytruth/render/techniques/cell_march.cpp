@@ -1,6 +1,7 @@
 #include "raytruth/render/techniques/cell_march.hpp"
 
 #include "raytruth/core/dispatch.hpp"
+#include "raytruth/core/double_double.hpp"
 #include "raytruth/core/error.hpp"
 #include "raytruth/kernels/cell_kernels.hpp"
 #include "raytruth/reference/certified.hpp"
@@ -18,7 +19,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
+#include <vector>
 
 namespace raytruth {
 
@@ -268,17 +271,46 @@ Eigen::Array4d CellRay::operator()(const PixelRay& pixel, const std::optional<st
 
 namespace {
 
+/// Voxels and a transfer function whose scalars count from another origin.
+struct Shifted {
+  Grid grid;
+  PiecewiseLinear transfer;
+};
+
+/// The scalars counted from the lowest voxel, where they differ by little of what they are, as labels and times do, so
+/// that cubics keep the digits in which they differ. Nothing where that is not so, or where not every difference is
+/// exact.
+std::optional<Shifted> counted_from_lowest(const Scene& scene) {
+  constexpr double little = 0x1p-12;
+  const auto [low, high] = scene.grid.range();
+  if (!(high - low < little * std::abs(low))) return {};
+  bool is_exact = true;
+  const auto from_lowest = [&, origin = low](double s) {
+    const DoubleDouble difference = two_sum(s, -origin);
+    is_exact = is_exact && difference.low == 0;
+    return difference.high;
+  };
+  Grid grid = scene.grid;
+  for (double& value : grid.values) value = from_lowest(value);
+  std::vector<TransferPoint> points = scene.transfer.points();
+  for (TransferPoint& point : points) point.s = from_lowest(point.s);
+  if (!is_exact) return {};
+  return Shifted{std::move(grid), PiecewiseLinear(std::move(points))};
+}
+
 PixelRendererFactory prepare(const PreparedScene& prepared) {
   const Scene& scene = prepared.scene;
   const auto& field = std::get<TrilinearField>(prepared.field);
-  const auto march =
-      std::make_shared<const CellMarch>(scene.grid, scene.border, scene.transfer, scene.emission, scene.opaque);
+  const std::optional<Shifted> shifted = counted_from_lowest(scene);
+  const PiecewiseLinear& transfer = shifted ? shifted->transfer : scene.transfer;
+  const auto march = std::make_shared<const CellMarch>(shifted ? shifted->grid : scene.grid, scene.border, transfer,
+                                                       scene.emission, scene.opaque);
   auto blocks = asked_blocks(scene, field);
   if (!blocks)
     blocks = std::make_shared<const OccupiedBlocks>(
         certain_blocks(field, ClearScalars(scene.transfer, scene.emission), prepared.placing_error));
-  return [&scene, march, blocks]() -> PixelRenderer {
-    return [march, blocks, ray = CellRay(*march, scene.transfer, scene.emission),
+  return [&scene, march, blocks, transfer]() -> PixelRenderer {
+    return [march, blocks, ray = CellRay(*march, transfer, scene.emission),
             parts_of = PartsOfRay(scene.grid.size, scene.border, blocks.get())](
                const PixelRay& pixel) mutable -> PixelLight { return {ray(pixel, parts_of(pixel.ray))}; };
   };
