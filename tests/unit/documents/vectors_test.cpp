@@ -24,7 +24,7 @@ constexpr std::uint64_t seeds = 20;
 /// Vectors whose certified answers are asked for: ball arithmetic takes a second for what a seed adds to the first
 /// form.
 std::vector<ConformanceVector> integrated_vectors(std::uint64_t seed) {
-  return conformance_vectors(seed, seed < 3 ? VectorForm::second : VectorForm::first);
+  return conformance_vectors(seed, seed == 1 ? VectorForm::second : VectorForm::first);
 }
 
 /// Bernstein coefficients of degree 9 of a polynomial in powers of t, exactly: b_i = sum_k binomial(i, k) /
@@ -253,8 +253,9 @@ TEST(Vectors, ReferenceIsCloseEnoughToCountDigits) {
 }
 
 TEST(Vectors, SeedsDiffer) {
-  EXPECT_EQ(vectors_json(1), vectors_json(1));
-  EXPECT_NE(vectors_json(1).at("vectors"), vectors_json(2).at("vectors"));
+  const auto of_seed = [](std::uint64_t seed) { return vectors_json(seed, VectorForm::first); };
+  EXPECT_EQ(of_seed(1), of_seed(1));
+  EXPECT_NE(of_seed(1).at("vectors"), of_seed(2).at("vectors"));
 }
 
 const Certified truth{{.color = {0.5, 0.25, 0}, .opacity = 0.125}, 1e-14};
