@@ -38,24 +38,6 @@ struct TransferOptions {
 
 constexpr std::size_t most_points_shown = 32;
 
-/// The transfer function as scenes, cases and tables state it.
-Json points_json(const PiecewiseLinear& transfer) {
-  Json points = Json::array();
-  for (std::size_t i = 0; i < transfer.points().size(); ++i) {
-    const auto& [s, optics] = transfer.points()[i];
-    Json point{{"s", s}};
-    if (transfer.is_linear_in_opacity())
-      point["opacity"] = transfer.opacities()[i];
-    else
-      point["extinction"] = optics.extinction;
-    point["color"] = {optics.color[0], optics.color[1], optics.color[2]};
-    points.push_back(std::move(point));
-  }
-  Json document{{"points", std::move(points)}};
-  if (transfer.is_linear_in_opacity()) document["unit_length"] = transfer.unit_length();
-  return document;
-}
-
 std::string listing_text(const std::filesystem::path& file, const std::vector<TransferListing>& listings) {
   std::string text =
       fmt::format("{} holds {} transfer functions; --preset NAME shows one\n\n{:<40}  {:>7}  {:>9}  {}\n",
@@ -153,13 +135,13 @@ int show_transfer(const TransferOptions& options) {
   const TransferDocument read =
       read_transfer_function(request_of(options), {.volume = volume ? &*volume : nullptr}, warnings);
   for (const std::string& warning : warnings) say(warning);
-  if (!options.output.empty()) write_whole(options.output, points_json(read.transfer).dump(2) + "\n");
+  if (!options.output.empty()) write_whole(options.output, transfer_function_json(read.transfer).dump(2) + "\n");
   Json description = read.description;
   if (!options.json) {
     print(description_text(description, read.transfer));
     return 0;
   }
-  description.update(points_json(read.transfer));
+  description.update(transfer_function_json(read.transfer));
   if (!warnings.empty()) description["warnings"] = warnings;
   print(description.dump(2) + "\n");
   return 0;

@@ -107,4 +107,22 @@ TransferDocument read_transfer_function(const JsonReader& json, const TransferCo
   return {std::move(transfer), std::move(description)};
 }
 
+nlohmann::ordered_json transfer_function_json(const PiecewiseLinear& transfer) {
+  using Json = nlohmann::ordered_json;
+  Json points = Json::array();
+  for (std::size_t i = 0; i < transfer.points().size(); ++i) {
+    const auto& [s, optics] = transfer.points()[i];
+    Json point{{"s", s}};
+    if (transfer.is_linear_in_opacity())
+      point["opacity"] = transfer.opacities()[i];
+    else
+      point["extinction"] = optics.extinction;
+    point["color"] = {optics.color[0], optics.color[1], optics.color[2]};
+    points.push_back(std::move(point));
+  }
+  Json document{{"points", std::move(points)}};
+  if (transfer.is_linear_in_opacity()) document["unit_length"] = transfer.unit_length();
+  return document;
+}
+
 }  // namespace raytruth

@@ -36,4 +36,7 @@ bool is_of_another_program(const JsonReader& json);
 TransferDocument read_transfer_function(const JsonReader& json, const TransferContext& context,
                                         std::vector<std::string>& warnings);
 
+/// The points of a transfer function as scenes, cases and tables state them, and `unit_length` beside opacities.
+nlohmann::ordered_json transfer_function_json(const PiecewiseLinear& transfer);
+
 }  // namespace raytruth

@@ -1,6 +1,7 @@
 #include "raytruth/documents/conformance/vectors.hpp"
 
 #include "raytruth/core/random.hpp"
+#include "raytruth/documents/read_transfer_function.hpp"
 #include "raytruth/reference/arb_integral.hpp"
 #include "raytruth/signals/piecewise_polynomial.hpp"
 
@@ -423,23 +424,6 @@ bool has(VectorForm form, const Recipe& recipe) {
 
 Json color_of(const Vector3<double>& color) { return {color[0], color[1], color[2]}; }
 
-Json points_json(const PiecewiseLinear& transfer) {
-  Json points = Json::array();
-  for (std::size_t i = 0; i < transfer.points().size(); ++i) {
-    const auto& [s, optics] = transfer.points()[i];
-    Json point{{"s", s}};
-    if (transfer.is_linear_in_opacity())
-      point["opacity"] = transfer.opacities()[i];
-    else
-      point["extinction"] = optics.extinction;
-    point["color"] = color_of(optics.color);
-    points.push_back(std::move(point));
-  }
-  Json result{{"points", std::move(points)}};
-  if (transfer.is_linear_in_opacity()) result["unit_length"] = transfer.unit_length();
-  return result;
-}
-
 Json lists_json(const SeparateLists& lists) {
   Json colors = Json::array();
   for (const auto& [s, color] : lists.colors) colors.push_back({{"s", s}, {"color", color_of(color)}});
@@ -464,7 +448,7 @@ Json vector_json(const ConformanceVector& vector) {
     json["signal"] = {
         {"kind", "piecewise_polynomial"}, {"breaks", vector.breaks}, {"coefficients", vector.coefficients}};
   }
-  json["transfer_function"] = points_json(vector.transfer);
+  json["transfer_function"] = transfer_function_json(vector.transfer);
   if (vector.lists) json["separate_lists"] = lists_json(*vector.lists);
   const Certified truth = truth_of(vector);
   json["reference"] = {{"color", {truth.color[0], truth.color[1], truth.color[2]}},
