@@ -49,7 +49,7 @@ class RayIntegral {
   template <int Degree>
   Certified operator()(const Chain<Degree>& signal, const SignalError& error = {}, double tolerance = 1e-13);
 
-  /// The same of a signal in 106 bits, some 20 times slower: for what has not converged otherwise.
+  /// The integral of a signal in 106 bits, some 20 times slower: for what has not converged otherwise.
   template <int Degree>
   Certified operator()(const PreciseChain<Degree>& signal, double tolerance = 1e-13);
 

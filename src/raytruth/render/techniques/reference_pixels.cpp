@@ -65,7 +65,7 @@ class ReferencePixels {
     const Span inside = clip(field_.grid().size, ray.origin, ray.direction);
     return inside.begin < inside.end;
   }
-  /// The same ray in 106 bits, if much of what is unknown of it is rounding.
+  /// Takes the ray in 106 bits, if much of what is unknown of it is rounding.
   void look_closer(const PixelRay& pixel, const SignalError& error, Certified& truth) {
     PreciseChain<Field::degree> signal = field_.trace_precisely(pixel.ray, pixel.displacement);
     const double at_hand =
