@@ -201,13 +201,17 @@ std::pair<std::size_t, std::size_t> LinearIntervals::reached(double low, double 
           static_cast<std::size_t>(std::upper_bound(knots_.begin(), knots_.end(), high) - knots_.begin())};
 }
 
-bool LinearIntervals::are_dark(double low, double high, Emission emission) const {
-  const auto is_dark = [emission](const Optics& optics) {
+bool LinearIntervals::is_dark(std::size_t interval, Emission emission) const {
+  const auto is_dark_at = [emission](const Optics& optics) {
     return optics.extinction == 0 && (emission == Emission::associated || (optics.color == 0).all());
   };
+  return is_dark_at(intervals_[interval].at_0) && is_dark_at(intervals_[interval].at_1);
+}
+
+bool LinearIntervals::are_dark(double low, double high, Emission emission) const {
   const auto [first, last] = reached(low, high);
   for (std::size_t i = first; i <= last; ++i)
-    if (!is_dark(intervals_[i].at_0) || !is_dark(intervals_[i].at_1)) return false;
+    if (!is_dark(i, emission)) return false;
   return true;
 }
 

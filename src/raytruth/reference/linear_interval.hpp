@@ -79,7 +79,8 @@ class LinearIntervals {
   [[nodiscard]] double most_extinction() const { return most_extinction_; }
   [[nodiscard]] double most_color() const { return most_color_; }
 
-  /// Whether nothing absorbs, and in plain emission nothing shines, at any scalar from low to high.
+  /// Whether nothing absorbs, and in plain emission nothing shines, in an interval; and at any scalar from low to high.
+  [[nodiscard]] bool is_dark(std::size_t interval, Emission emission) const;
   [[nodiscard]] bool are_dark(double low, double high, Emission emission) const;
 
   /// The largest `scale` of an interval.

@@ -292,7 +292,7 @@ struct RayIntegral::Parts {
   template <int Degree>
   [[nodiscard]] double underflow(const Chain<Degree>& signal) const;
   template <int Degree>
-  [[nodiscard]] bool is_dark(const Chain<Degree>& signal, const SignalError& error) const;
+  [[nodiscard]] bool is_dark(const Chain<Degree>& signal, const SignalError& error);
   template <int Degree>
   void fit(const Chain<Degree>& signal, const SignalError& error, Buffers<Degree>& buffers) const;
   template <int Degree>
@@ -980,17 +980,33 @@ double RayIntegral::Parts::underflow(const Chain<Degree>& signal) const {
 
 /// Whether there is nothing along the ray but what lies in its unknown end, and that adds to the radius all it can.
 template <int Degree>
-bool RayIntegral::Parts::is_dark(const Chain<Degree>& signal, const SignalError& error) const {
+bool RayIntegral::Parts::is_dark(const Chain<Degree>& signal, const SignalError& error) {
+  constexpr double smallest = 0x1p-300;
   const double unknown = error.of_length + error.unclaimed;
   const double most = std::max(intervals_.most_extinction(), intervals_.most_color());
   if (unknown > 0 && most > 0 && std::min(1.0, most) * unknown < 0x1p-900) return false;
-  for (std::size_t i = 0; i < signal.pieces.size(); ++i) {
+  bool are_coefficients_dark = true;
+  for (std::size_t i = 0; i < signal.pieces.size() && are_coefficients_dark; ++i) {
     const auto& b = signal.pieces[i].polynomial.coefficients;
     const auto [low, high] = std::minmax_element(b.begin(), b.end());
     const double reach = error.of_pieces.empty() ? 0 : error.of_pieces[i];
-    if (!intervals_.are_dark(*low - reach, *high + reach, emission_)) return false;
+    are_coefficients_dark = intervals_.are_dark(*low - reach, *high + reach, emission_);
   }
-  return true;
+  if (are_coefficients_dark) return true;
+  // What light there is beyond an interval would be seen in the errors, unless it is too little for binary64.
+  if (signal.length() * intervals_.most_extinction() < smallest) return false;
+  auto& buffers = std::get<Buffers<Degree>>(buffers_);
+  for (std::size_t i = 0; i < signal.pieces.size(); ++i)
+    cut_(intervals_, signal.pieces[i].polynomial, i, buffers.stretches);
+  fit(signal, error, buffers);
+  buffers.stretches.clear();
+  const auto is_zero = [](double x) { return x == 0; };
+  const bool is_dark = std::all_of(buffers.intervals.begin(), buffers.intervals.end(),
+                                   [this](std::size_t interval) { return intervals_.is_dark(interval, emission_); }) &&
+                       std::all_of(buffers.depth_errors.begin(), buffers.depth_errors.end(), is_zero) &&
+                       std::all_of(buffers.color_errors.begin(), buffers.color_errors.end(), is_zero);
+  buffers.clear_pieces();
+  return is_dark;
 }
 
 /// Integrates where lengths, extinctions or colours are so small or so large that their products underflow or
