@@ -142,9 +142,13 @@ std::int64_t blocks(const Options& options) { return options.blocks; }
 std::vector<Record> records_of_block(const Experiment& experiment, const Options& options, std::int64_t block) {
   std::vector<Record> records;
   const auto begin_of = [&](std::int64_t all, std::int64_t b) { return all * b / options.blocks; };
-  add_records(records, {.block = block, .signal = "smooth_piece"}, begin_of(options.pieces, block),
-              begin_of(options.pieces, block + 1),
-              [&](std::uint64_t index) { return smooth_piece(experiment.seed, index); });
+  const auto make_piece = options.is_linear_in_opacity ? smooth_opacity_piece : smooth_piece;
+  add_records(records,
+              {.block = block,
+               .signal = "smooth_piece",
+               .transfer = options.is_linear_in_opacity ? opacity_shapes.front() : std::string_view()},
+              begin_of(options.pieces, block), begin_of(options.pieces, block + 1),
+              [&](std::uint64_t index) { return make_piece(experiment.seed, index); });
   constexpr auto shapes = static_cast<std::int64_t>(signal_shapes.size());
   for (std::int64_t shape = 0; shape < shapes; ++shape) {
     const auto signal = static_cast<SignalShape>(shape);

@@ -6,7 +6,9 @@
 #include <acb_calc.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <optional>
 
 namespace raytruth {
 
@@ -77,6 +79,75 @@ Ball integral(const Polynomial& whole_factor, const Polynomial& whole_depth, con
   return widened(result, factor.error() + parameter.factor.magnitude() * expm1(depth.error()));
 }
 
+/// exp(-p(y)) on [-1, 1], p(0) = 0: its series about 0. The terms left out sum up to at most those of
+/// exp(sum |p_k| y^k), whose coefficients are positive and no smaller. Nothing where that is too much.
+std::optional<Polynomial> exponential(const Polynomial& p) {
+  // The costs of longer series and of more parts balance about here.
+  constexpr slong terms = 32;
+  Polynomial magnitudes;
+  Polynomial negative;
+  for (slong k = 1; k < p.size(); ++k) {
+    magnitudes.set(k, p.coefficient(k).magnitude());
+    negative.set(k, -p.coefficient(k));
+  }
+  const Ball whole = magnitudes(1.0);
+  if (!(whole < Ball(8.0))) return {};
+  Polynomial majorant;
+  arb_poly_exp_series(majorant.get(), magnitudes.get(), terms, arb::precision);
+  const Ball rest = max(0.0, exp(whole) - majorant(1.0)).upper();
+  if (!(rest < Ball(0x1p-80))) return {};
+  Polynomial result;
+  arb_poly_exp_series(result.get(), negative.get(), terms, arb::precision);
+  result.set(0, widened(result.coefficient(0), rest));
+  return result;
+}
+
+/// The integral of p(y) over [-1, 1], where what p stands for may be anywhere in its coefficients' balls at every y.
+Ball integral_about_0(const Polynomial& p) {
+  Ball sum;
+  for (slong k = 0; k < p.size(); ++k) {
+    const Ball share = Ball(2.0) / Ball(static_cast<double>(k + 1));
+    const Ball coefficient = p.coefficient(k);
+    sum += k % 2 == 0 ? share * coefficient : widened(Ball(), share * coefficient.radius());
+  }
+  return sum;
+}
+
+/// Adds the integrals of each factor times exp(-depth) over middle - half ... middle + half, of series.
+void add_integrals(const std::array<Polynomial, 2>& factors, const Polynomial& depth, const Ball& middle,
+                   const Ball& half, std::array<Ball, 2>& sums) {
+  Polynomial from_middle = depth.restricted(middle, middle + half);
+  const Ball front = exp(-from_middle.coefficient(0));
+  from_middle.set(0, 0.0);
+  if (const auto transmittance = exponential(from_middle)) {
+    for (std::size_t i = 0; i < factors.size(); ++i)
+      if (factors[i].size() > 0)
+        sums[i] += half * front * integral_about_0(factors[i].restricted(middle, middle + half) * *transmittance);
+    return;
+  }
+  const Ball quarter = half / 2;
+  add_integrals(factors, depth, middle - quarter, quarter, sums);
+  add_integrals(factors, depth, middle + quarter, quarter, sums);
+}
+
+/// The integrals of each factor times exp(-depth) over [0, 1], the depth being 0 at 0; `scale`: of their values.
+std::array<Ball, 2> integrals(const std::array<Polynomial, 2>& factors, const Polynomial& depth, const Ball& scale,
+                              std::int64_t& evaluations) {
+  // Above it the quadrature is faster: it need not look at what is hidden.
+  constexpr double most_of_series = 32;
+  std::array<Ball, 2> sums;
+  const Polynomial short_depth = depth.trimmed(polynomial_bits);
+  if (short_depth.magnitude() < Ball(most_of_series)) {
+    std::array<Polynomial, 2> short_factors;
+    for (std::size_t i = 0; i < factors.size(); ++i) short_factors[i] = factors[i].trimmed(polynomial_bits);
+    add_integrals(short_factors, short_depth, 0.5, 0.5, sums);
+  } else {
+    for (std::size_t i = 0; i < factors.size(); ++i)
+      if (factors[i].size() > 0) sums[i] = integral(factors[i], depth, scale, evaluations);
+  }
+  return sums;
+}
+
 /// (1 - exp(-depth)) / depth for depth >= 0.
 Ball mean_transmittance(const Ball& depth) {
   if (depth.sign() > 0) return -expm1(-depth) / depth;
@@ -114,14 +185,14 @@ StretchLight integrate(const BallStretch& stretch, Emission emission, std::int64
   // The integrals of q T, for a colour of 1 and for a colour of the weight.
   const Polynomial density = is_associated ? stretch.length * stretch.extinction : Polynomial(stretch.length);
   const Ball scale = is_associated ? opacity : Ball(1.0) < total ? stretch.length / total : stretch.length;
-  const Ball of_one = is_associated    ? opacity
-                      : is_homogeneous ? stretch.length * mean_transmittance(total)
-                                       : integral(density, depth, scale, evaluations);
   const auto is_zero = [](const Ball& x) { return arb_is_zero(x.get()) != 0; };
   const auto& change = stretch.color_change;
-  const Ball of_weight = std::all_of(change.begin(), change.end(), is_zero) || density.size() == 0
-                             ? Ball()
-                             : integral(stretch.weight * density, depth, scale, evaluations);
+  const bool is_one_color = std::all_of(change.begin(), change.end(), is_zero);
+  const bool is_closed = is_associated || is_homogeneous;
+  const auto [by_parts, of_weight] =
+      integrals({is_closed ? Polynomial() : density, is_one_color ? Polynomial() : stretch.weight * density}, depth,
+                scale, evaluations);
+  const Ball of_one = is_associated ? opacity : is_homogeneous ? stretch.length * mean_transmittance(total) : by_parts;
   StretchLight light{.color = {}, .depth = total};
   for (std::size_t i = 0; i < 3; ++i) light.color[i] = stretch.color[i] * of_one + change[i] * of_weight;
   return light;

@@ -10,6 +10,9 @@ namespace raytruth {
 
 namespace {
 
+/// The largest opacity of random transfer functions that stay below 1.
+constexpr double most_opacity = 0.99;
+
 /// Numbers in a row that depend on seed and index alone.
 class Dice {
  public:
@@ -99,26 +102,25 @@ PiecewiseLinear random_transfer(TransferShape shape, double m, Dice& dice) {
 }
 
 PiecewiseLinear random_opacity_transfer(OpacityShape shape, double unit_length, Dice& dice) {
-  constexpr double most = 0.99;
   std::vector<OpacityPoint> points;
   const auto add = [&](double s, double opacity) { points.push_back({s, opacity, dice.color()}); };
   if (shape == OpacityShape::ramp) {
-    add(0, most * dice.uniform());
-    add(1, most);
+    add(0, most_opacity * dice.uniform());
+    add(1, most_opacity);
   } else if (shape == OpacityShape::table) {
-    for (int i = 0; i <= 256; ++i) add(i / 256.0, most * dice.uniform());
+    for (int i = 0; i <= 256; ++i) add(i / 256.0, most_opacity * dice.uniform());
   } else {
     std::vector<double> places(static_cast<std::size_t>(3 + dice.choice(4)));
     for (double& s : places) s = dice.uniform();
     std::sort(places.begin(), places.end());
     const auto opaque = static_cast<std::size_t>(dice.choice(static_cast<int>(places.size()) - 1));
     for (std::size_t i = 0; i < places.size(); ++i) {
-      double opacity = most * dice.uniform();
+      double opacity = most_opacity * dice.uniform();
       if (shape == OpacityShape::contacts && i % 2 == 0) opacity = 1;
       if (shape == OpacityShape::opaque && (i == opaque || i == opaque + 1)) opacity = 1;
       add(places[i], opacity);
       if (shape == OpacityShape::jumps || (shape == OpacityShape::opaque && i == opaque + 1 && dice.choice(2) == 0))
-        add(places[i], most * dice.uniform());
+        add(places[i], most_opacity * dice.uniform());
     }
   }
   return from_opacity(points, unit_length);
@@ -170,7 +172,12 @@ Chain<Degree> random_signal(SignalShape shape, const PiecewiseLinear& transfer, 
 
 }  // namespace
 
-IntegralCase smooth_piece(std::uint64_t seed, std::uint64_t index) {
+namespace {
+
+/// One polynomial over a length of 1/4 to 2, of degree 3 or up to 9, its coefficients in [0, 1]; `make` finds a
+/// transfer function for that length and for the polynomial's mean.
+template <class Make>
+IntegralCase one_piece(std::uint64_t seed, std::uint64_t index, const Make& make) {
   Dice dice(seed, index);
   const auto piece = [&]<int Degree>(std::integral_constant<int, Degree>, int degree) {
     Chain<Degree> chain;
@@ -179,14 +186,32 @@ IntegralCase smooth_piece(std::uint64_t seed, std::uint64_t index) {
     const double length = dice.uniform(0.25, 2);
     chain.pieces.push_back({0.0, length, elevated<Degree>(std::move(control))});
     chain.end = length;
-    const double front = dice.uniform();
-    const double back = dice.uniform();
-    const double mean = front + chain.pieces[0].polynomial.integral() * (back - front);
-    const double m = dice.log_uniform(1e-3, 30) / (length * mean);
-    return IntegralCase{chain, PiecewiseLinear({{0, {m * front, dice.color()}}, {1, {m * back, dice.color()}}})};
+    return IntegralCase{chain, make(length, chain.pieces[0].polynomial.integral(), dice)};
   };
   if (dice.choice(2) == 0) return piece(std::integral_constant<int, 3>{}, 3);
   return piece(std::integral_constant<int, 9>{}, dice.choice(10));
+}
+
+}  // namespace
+
+IntegralCase smooth_piece(std::uint64_t seed, std::uint64_t index) {
+  return one_piece(seed, index, [](double length, double mean_signal, Dice& dice) {
+    const double front = dice.uniform();
+    const double back = dice.uniform();
+    const double mean = front + mean_signal * (back - front);
+    const double m = dice.log_uniform(1e-3, 30) / (length * mean);
+    return PiecewiseLinear({{0, {m * front, dice.color()}}, {1, {m * back, dice.color()}}});
+  });
+}
+
+IntegralCase smooth_opacity_piece(std::uint64_t seed, std::uint64_t index) {
+  return one_piece(seed, index, [](double length, double mean_signal, Dice& dice) {
+    const double front = most_opacity * dice.uniform();
+    const double back = most_opacity * dice.uniform();
+    const double mean = front + mean_signal * (back - front);
+    const double unit_length = -std::log1p(-mean) * length / dice.log_uniform(1e-3, 30);
+    return from_opacity(std::vector<OpacityPoint>{{0, front, dice.color()}, {1, back, dice.color()}}, unit_length);
+  });
 }
 
 namespace {

@@ -37,9 +37,12 @@ enum class OpacityShape { ramp, points, jumps, table, contacts, opaque };
 inline constexpr std::array<std::string_view, 6> opacity_shapes{"ramp",  "points",   "jumps",
                                                                 "table", "contacts", "opaque"};
 
-/// Case `index` of a seed: one polynomial between two points of the transfer function two points of the transfer
-/// function, of degree 3 or up to 9, the optical depth log-uniform from 1e-3 to 30.
+/// Case `index` of a seed: one polynomial between two points of the transfer function, of degree 3 or up to 9, the
+/// optical depth log-uniform from 1e-3 to 30.
 IntegralCase smooth_piece(std::uint64_t seed, std::uint64_t index);
+
+/// A `smooth_piece` between two opacities up to 0.99; the optical depth is that of the signal's mean.
+IntegralCase smooth_opacity_piece(std::uint64_t seed, std::uint64_t index);
 
 /// Case `index` of a seed: 1 to 10 pieces of these shapes; the largest extinction times the length is log-uniform from
 /// 1e-9 to 1e5. A function of its arguments alone.

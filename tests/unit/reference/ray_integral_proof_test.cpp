@@ -106,6 +106,18 @@ TEST(RayIntegralProof, SmoothPieces) {
   }
 }
 
+TEST(RayIntegralProof, SmoothOpacityPieces) {
+  for (std::uint64_t index = 0; index < 500; ++index) {
+    const IntegralCase asked = smooth_opacity_piece(seed, index);
+    for (const Emission emission : both_emissions) {
+      SCOPED_TRACE(testing::Message() << "opacity piece " << index << " of seed " << seed << ", " << name(emission));
+      const Certified here = reference(asked, emission);
+      expect_agreement(here, arb(asked, emission));
+      EXPECT_LE(here.radius, 5e-13) << text(here);
+    }
+  }
+}
+
 /// The comparison itself can fail.
 TEST(RayIntegralProof, SeesASmallMistake) {
   const IntegralCase asked = smooth_piece(seed, 0);
