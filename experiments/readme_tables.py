@@ -1,9 +1,14 @@
-"""Fills the tables of READMEs from results/ alone: readme_tables.py REPOSITORY [--check]. With --check nothing is written, and
-the exit code is 1 if a table is not what the results say."""
+"""Fills the tables of READMEs, and the figures in their prose, from results/ alone: readme_tables.py REPOSITORY [--check]. With
+--check nothing is written, and the exit code is 1 if one is not what the results say.
+
+A figure in prose has a comment behind it that says where it comes from, as
+    4.6<!-- eta {"angle": 90, "normalization": "quadratic", "against": "exact"} | one norm_deviation_max *100 .1f -->
+"""
 
 import json
 import pathlib
 import re
+import statistics
 import sys
 
 
@@ -17,24 +22,90 @@ def table(head, rows):
 
 
 def ledger(results):
-    """How many claims of each publication have which verdict, and those that do not hold."""
+    """How many claims of each publication have which verdict; the parts that do not hold; what disagrees in print; findings."""
     rows = json.loads((results / "ledger.json").read_text(encoding="utf-8"))["rows"]
-    verdicts = ["reproduced", "contradicted", "not comparable", "not measured"]
+    verdicts = ["reproduced", "compatible", "mixed", "contradicted", "not comparable", "not measured"]
+
+    def name_of(row):
+        return row["claim"] + (f" ({row['part']})" if row["part"] else "")
+
+    def measured(row):
+        unit = f" {row['unit']}" if row["unit"] else ""
+        spread = "" if row["low"] == row["high"] else f" ({number(row['low'])} to {number(row['high'])})"
+        return number(row["measured"]) + unit + spread
+
+    def link(row):
+        return f"[{row['experiment']}]({row['experiment']}.json)"
 
     def counts(of_rows):
-        return [str(sum(row["verdict"] == verdict for row in of_rows)) for verdict in verdicts]
+        claims = {row["claim"]: row["claim_verdict"] for row in of_rows if row["kind"] == "claim"}
+        findings = sum(row["kind"] == "finding" for row in of_rows)
+        return [str(list(claims.values()).count(verdict)) for verdict in verdicts] + [str(findings)]
 
     papers = list(dict.fromkeys(row["paper"] for row in rows))
-    lines = [[paper, *counts([row for row in rows if row["paper"] == paper])] for paper in papers]
-    contradicted = []
-    for row in rows:
-        if row["verdict"] == "contradicted":
-            name = row["claim"] + (f" ({row['part']})" if row["part"] else "")
-            measured = f"{number(row['measured'])} ({number(row['low'])} to {number(row['high'])})"
-            experiment = f"[{row['experiment']}]({row['experiment']}.json)"
-            contradicted.append([name, number(row["stated"]), measured, experiment])
-    head = ["contradicted", "published", "measured (low to high)", "experiment"]
-    return table(["publication", *verdicts], [*lines, ["all", *counts(rows)]]) + "\n\n" + table(head, contradicted)
+    lines = [[str(paper), *counts([row for row in rows if row["paper"] == paper])] for paper in papers]
+    tables = [table(["claims of", *verdicts, "findings"], [*lines, ["all", *counts(rows)]])]
+    contradicted = [
+        [name_of(row), row["claim_verdict"], number(row["stated"]), measured(row), link(row)]
+        for row in rows
+        if row["verdict"] == "contradicted"
+    ]
+    tables.append(table(["parts that are contradicted", "claim", "stated", "measured", "experiment"], contradicted))
+    printed = [
+        [name_of(row), number(row["stated"]), number(row["measured"]), row["verdict"]]
+        for row in rows
+        if row["kind"] == "internal consistency"
+    ]
+    tables.append(table(["printed numbers against each other", "stated", "follows", "verdict"], printed))
+    findings = [[row["claim"], row["stated"], measured(row), link(row)] for row in rows if row["kind"] == "finding"]
+    tables.append(table(["about", "finding, which no publication states", "measured", "experiment"], findings))
+    return "\n\n".join(tables)
+
+
+def criteria(results):
+    file = results.parent / "src" / "experiments" / "criteria.json"
+    rows = json.loads(file.read_text(encoding="utf-8"))["criteria"]
+    return table(["criterion", "it holds where", "reason"], [[row["name"], row["sentence"], row["reason"]] for row in rows])
+
+
+AGGREGATES = {"min": min, "max": max, "median": statistics.median, "count": len, "one": lambda values: single(values)}
+FIGURE = re.compile(r"(?P<number>[^\s(]+?)<!-- (?P<where>[^>]*?) \| (?P<how>[^>|]*?) -->")
+
+
+def single(values):
+    if len(values) != 1:
+        sys.exit(f"found {len(values)} rows, 1 is allowed")
+    return values[0]
+
+
+def figure(results, where, how):
+    """The number that a marker in prose names: RESULT SELECTOR, or RESULT SELECTOR / SELECTOR, | AGGREGATE COLUMN [*FACTOR] FORMAT."""
+    name, selectors = where.split(" ", 1)
+    rows = json.loads((results / f"{name}.json").read_text(encoding="utf-8"))["rows"]
+    aggregate, column, *factor, form = how.split()
+
+    def value(selector):
+        wanted = json.loads(selector)
+        found = [
+            row[column]
+            for row in rows
+            if row.get(column) is not None
+            and all(row.get(key) in (item if isinstance(item, list) else [item]) for key, item in wanted.items())
+        ]
+        if not found:
+            sys.exit(f"{name}: no row is {selector}")
+        return AGGREGATES[aggregate](found)
+
+    values = [value(selector) for selector in selectors.split(" / ")]
+    result = values[0] / values[1] if len(values) == 2 else values[0]
+    return format(result * float(factor[0].removeprefix("*")) if factor else result, form)
+
+
+def prose(results, text):
+    """The text with its figures as results have them."""
+    return FIGURE.sub(
+        lambda match: figure(results, match["where"], match["how"]) + match[0][len(match["number"]) :], text
+    )
 
 
 def conformance(results):
@@ -101,7 +172,12 @@ def fill(file, text, name, content):
     return filled
 
 
-TABLES = {"results/README.md": (ledger, conformance, benchmarks), "src/raytruth/rules/README.md": (functions,)}
+TABLES = {
+    "README.md": (),
+    "experiments/README.md": (criteria,),
+    "results/README.md": (ledger, conformance, benchmarks),
+    "src/raytruth/rules/README.md": (functions,),
+}
 
 
 def main():
@@ -110,10 +186,11 @@ def main():
         before = after = (top / file).read_text(encoding="utf-8")
         for make in makers:
             after = fill(file, after, make.__name__, make(top / "results"))
+        after = prose(top / "results", after)
         if "--check" not in sys.argv[2:]:
             (top / file).write_text(after, encoding="utf-8")
         elif after != before:
-            sys.exit(f"{file}: its tables are not those of results/; experiments/run --update fills them")
+            sys.exit(f"{file}: its tables or figures are not those of results/; experiments/run --judge fills them")
 
 
 main()

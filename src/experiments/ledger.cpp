@@ -2,12 +2,16 @@
 
 #include "experiments/result.hpp"
 #include "experiments/texts.hpp"
+#include "experiments/verdict.hpp"
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <initializer_list>
 #include <map>
+#include <set>
+#include <string>
 #include <utility>
 
 namespace raytruth {
@@ -25,14 +29,33 @@ Json columns() {
       {"field", "none"},
       {"claim", "name of the claim"},
       {"part", "which of several figures of the claim"},
+      {"kind",
+       "claim; finding: what no publication says but a reader should know; internal consistency: printed numbers "
+       "against "
+       "each other"},
+      {"claim_verdict",
+       "of the claim as a whole: its parts' verdict, leaving out what is not comparable; mixed where they differ, "
+       "compatible where they are reproduced and compatible"},
       {"paper", "the publication"},
       {"place", "where it states this"},
       {"text", "what it says"},
       {"stated", "the figure or the sentence that is judged"},
+      {"reading", "how the sentence is read"},
+      {"method", "whose or which method is judged, where several are called so"},
+      {"baseline", "what it is compared with"},
+      {"subject", "on what: volumes, rays, views, parameters"},
+      {"criterion", "what decides: a row of the table of criteria in experiments/README.md"},
+      {"deviation", "where the criterion is departed from, and why"},
       {"measured", "what was measured instead"},
-      {"low", "lower end of what was measured: its radius, or the 5th percentile of a distribution"},
-      {"high", "upper end: its radius, or the 95th percentile"},
-      {"verdict", "reproduced, contradicted, not comparable or not measured"},
+      {"unit", "of measured, low and high"},
+      {"column", "the column of the experiment's rows that measured is of"},
+      {"low", "lower end of what was measured"},
+      {"high", "its upper end"},
+      {"range", "what low and high are: two columns, a radius, or the extremes of so many rows"},
+      {"percentile", "of the printed figure among what was measured, in percent"},
+      {"verdict",
+       "of this part: reproduced, compatible, contradicted, not comparable or not measured; found or not found; "
+       "consistent or inconsistent"},
       {"experiment", "the experiment that shows it"},
       {"status", "ok, or refused where nothing was measured"},
       {"why", "how the claim was read, or why it was not measured"}};
@@ -50,13 +73,25 @@ Json empty_row(const Json& claim) {
           {"field", nullptr},
           {"claim", claim.at("claim")},
           {"part", nullptr},
+          {"kind", member("kind").is_null() ? Json(statement_kinds.front()) : member("kind")},
+          {"claim_verdict", nullptr},
           {"paper", member("paper")},
           {"place", member("place")},
           {"text", member("text")},
           {"stated", as_cell(claim.at("stated"))},
+          {"reading", member("reading")},
+          {"method", member("method")},
+          {"baseline", member("baseline")},
+          {"subject", member("subject")},
+          {"criterion", member("criterion")},
+          {"deviation", member("deviation")},
           {"measured", nullptr},
+          {"unit", nullptr},
+          {"column", nullptr},
           {"low", nullptr},
           {"high", nullptr},
+          {"range", nullptr},
+          {"percentile", nullptr},
           {"verdict", "not measured"},
           {"experiment", nullptr},
           {"status", "refused"},
@@ -77,6 +112,39 @@ Json judged_row(const Json& claim, const Judged& judged) {
   return row;
 }
 
+/// The verdict on a claim of several parts.
+std::string joint_verdict(const std::set<std::string>& verdicts) {
+  std::set<std::string> judged = verdicts;
+  judged.erase("not comparable");
+  judged.erase("not measured");
+  if (judged.empty()) return verdicts.contains("not comparable") ? "not comparable" : "not measured";
+  if (judged.size() == 1) return *judged.begin();
+  return judged == std::set<std::string>{"compatible", "reproduced"} ? "compatible" : "mixed";
+}
+
+/// Gives each row the verdict on its whole claim; findings are none.
+void add_joint_verdicts(Json& rows) {
+  std::map<std::string, std::set<std::string>> verdicts;
+  const auto is_finding = [](const Json& row) {
+    return row.at("kind") == statement_kinds[static_cast<std::size_t>(StatementKind::finding)];
+  };
+  for (const Json& row : rows)
+    if (!is_finding(row)) verdicts[row.at("claim")].insert(row.at("verdict").get<std::string>());
+  for (Json& row : rows)
+    if (!is_finding(row)) row["claim_verdict"] = joint_verdict(verdicts.at(row.at("claim")));
+}
+
+/// The rows of a claim: what experiments found of it, or that none judges it. Findings alone judge nothing.
+void add_rows(const Json& claim, const std::vector<Judged>& verdicts, Json& rows) {
+  const bool is_judged = std::any_of(verdicts.begin(), verdicts.end(), [](const Judged& verdict) {
+    return verdict.claim.value("kind", "") != statement_kinds[static_cast<std::size_t>(StatementKind::finding)];
+  });
+  const bool is_claim =
+      !claim.contains("kind") || claim.at("kind") != statement_kinds[static_cast<std::size_t>(StatementKind::finding)];
+  if (!is_judged && is_claim) rows.push_back(empty_row(claim));
+  for (const Judged& verdict : verdicts) rows.push_back(judged_row(claim, verdict));
+}
+
 }  // namespace
 
 Json make_ledger(const std::vector<JsonReader>& results) {
@@ -92,13 +160,11 @@ Json make_ledger(const std::vector<JsonReader>& results) {
     }
 
   Json rows = Json::array();
-  for (const Json& claim : claims) {
-    const auto& verdicts = judged.at(claim.at("claim"));
-    if (verdicts.empty()) rows.push_back(empty_row(claim));
-    for (const Judged& verdict : verdicts) rows.push_back(judged_row(claim, verdict));
-  }
+  for (const Json& claim : claims) add_rows(claim, judged.at(claim.at("claim")), rows);
   for (const std::string& name : unknown)
     for (const Judged& verdict : judged.at(name)) rows.push_back(judged_row(verdict.claim, verdict));
+
+  add_joint_verdicts(rows);
 
   const Provenance provenance{.profile = "full", .threads = 1, .started = std::chrono::system_clock::now()};
   return {{"raytruth", "result/1"},
@@ -108,6 +174,7 @@ Json make_ledger(const std::vector<JsonReader>& results) {
           {"styles", Json::object()},
           {"fields", Json::object()},
           {"columns", columns()},
+          {"criteria", Json::parse(criteria_text).at("criteria")},
           {"rows", std::move(rows)},
           {"published", Json::array()},
           {"checks", Json::array()}};

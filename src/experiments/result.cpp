@@ -46,12 +46,22 @@ Json published_json(const Experiment& experiment, const std::vector<Row>& rows, 
     const Verdict verdict = judge(claim, rows, columns);
     Json& entry = json.emplace_back(Json{{"claim", claim.name}});
     if (!claim.part.empty()) entry["part"] = claim.part;
+    if (claim.kind != StatementKind::claim) entry["kind"] = statement_kinds[static_cast<std::size_t>(claim.kind)];
     entry.update({{"stated", to_json(claim.stated)},
                   {"measured", to_json(verdict.measured)},
                   {"low", to_json(verdict.low)},
                   {"high", to_json(verdict.high)},
                   {"verdict", verdict.verdict},
                   {"why", to_json(verdict.why)}});
+    if (verdict.measured != Value()) {
+      const auto column = std::find_if(columns.begin(), columns.end(),
+                                       [&verdict](const Column& c) { return c.name == verdict.column; });
+      entry["unit"] = column == columns.end() ? "" : column->unit;
+      entry["column"] = verdict.column;
+      entry["range"] = verdict.range;
+      if (verdict.percentile != Value()) entry["percentile"] = to_json(verdict.percentile);
+    }
+    for (const auto& [term, text] : claim.terms) entry[term] = text;
   }
   return json;
 }
@@ -63,7 +73,7 @@ Json checks_json(const Experiment& experiment, const std::vector<Row>& rows) {
     json.push_back({{"bound", check.sentence},
                     {"holds", outcome.holds},
                     {"measured", to_json(outcome.measured)},
-                    {"limit", check.bound.limit},
+                    {"limit", outcome.limit},
                     {"why", to_json(outcome.why)}});
   }
   return json;
@@ -166,6 +176,35 @@ Json make_result(const Experiment& experiment, const Provenance& provenance, con
           {"rows", std::move(json_rows)},
           {"published", published_json(experiment, rows, columns)},
           {"checks", checks_json(experiment, rows)}};
+}
+
+Json judged_again(const JsonReader& result, const Experiment& experiment) {
+  Json was = result.at("experiment").json();
+  Json is = experiment.json.json();
+  for (const char* const words : {"question", "source", "published", "checks", "plot"}) {
+    was.erase(words);
+    is.erase(words);
+  }
+  for (const auto& [name, member] : is.items())
+    if (!was.contains(name) || was[name] != member)
+      result.at("experiment")
+          .refuse("a run whose \"" + name + "\" is another one", "rows of the experiment as it is; run it");
+  std::vector<Row> rows;
+  for (const JsonReader& row : result.at("rows").items(0)) rows.push_back(read_row(row));
+  std::vector<Column> columns;
+  for (const auto& [name, column] : result.at("columns").members()) {
+    const auto radius = column.find("radius");
+    columns.push_back({.name = name,
+                       .unit = column.at("unit").json().get<std::string>(),
+                       .description = {},
+                       .radius = radius ? radius->text() : ""});
+  }
+  Json judged = result.json();
+  judged["experiment"] = experiment.json.json();
+  judged["provenance"]["judged"] = {{"version", version}, {"commit", commit}};
+  judged["published"] = published_json(experiment, rows, columns);
+  judged["checks"] = checks_json(experiment, rows);
+  return judged;
 }
 
 std::string result_text(const Json& result) {

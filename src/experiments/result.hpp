@@ -42,6 +42,10 @@ nlohmann::ordered_json describe(const Field& field);
 nlohmann::ordered_json make_result(const Experiment& experiment, const Provenance& provenance,
                                    const nlohmann::ordered_json& fields, const std::vector<Row>& rows);
 
+/// A result whose rows are judged by what its experiment claims, checks and draws now; nothing is measured.
+/// Throws InputError where the rows are of another experiment.
+nlohmann::ordered_json judged_again(const JsonReader& result, const Experiment& experiment);
+
 /// A document as text that reads well and compares well: a line for every row, column, claim and check.
 std::string result_text(const nlohmann::ordered_json& result);
 

@@ -1,14 +1,22 @@
 #include "experiments/verdict.hpp"
 
+#include "experiments/criteria.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
 namespace raytruth {
 
 namespace {
+
+/// How a claim is read and judged, in words.
+constexpr std::array<std::string_view, 6> claim_terms{"reading", "method",    "baseline",
+                                                      "subject", "criterion", "deviation"};
 
 Value read_value(const JsonReader& json) {
   if (json.is_string()) return json.text();
@@ -21,11 +29,21 @@ std::string read_column(const JsonReader& json, const RowNames& names) {
   return json.word({names.columns.begin(), names.columns.end()});
 }
 
-Bound read_bound(const JsonReader& json, const RowNames& names) {
+/// The limits stated, or those of a criterion where none is.
+Bound read_bound(const JsonReader& json, const RowNames& names, const Criterion* criterion = nullptr) {
   Bound bound{.column = read_column(json.at("column"), names)};
-  bound.at_least = json.find("at_least").has_value();
-  if (bound.at_least && json.find("at_most")) json.refuse("at_least and at_most", "only one of them");
-  bound.limit = json.at(bound.at_least ? "at_least" : "at_most").number();
+  if (const auto least = json.find("at_least")) bound.at_least = least->number();
+  if (const auto most = json.find("at_most")) bound.at_most = most->number();
+  if (!bound.at_least && !bound.at_most && criterion != nullptr) {
+    bound.at_least = criterion->at_least;
+    bound.at_most = criterion->at_most;
+    if (!bound.at_least && !bound.at_most)
+      json.refuse("no limit, and none of its criterion", "at_least, at_most or both");
+  } else if (!bound.at_least && !bound.at_most) {
+    bound.at_most = json.at("at_most").number();  // refuses its absence
+  }
+  if (bound.at_least && bound.at_most && *bound.at_least > *bound.at_most)
+    json.refuse("at_least above at_most", "at_least <= at_most");
   return bound;
 }
 
@@ -92,6 +110,20 @@ std::string why_missing(const std::string& column) { return column + " is null i
 
 Value stated_why(const Claim& claim) { return claim.why.empty() ? Value() : Value(claim.why); }
 
+/// The verdict of a statement of a kind that holds or does not; `is_wide`: within a range that holds almost anything.
+std::string word_for(StatementKind kind, bool does_hold, bool is_wide) {
+  switch (kind) {
+    case StatementKind::finding:
+      return does_hold ? "found" : "not found";
+    case StatementKind::consistency:
+      return does_hold ? "consistent" : "inconsistent";
+    case StatementKind::claim:
+      break;
+  }
+  if (!does_hold) return "contradicted";
+  return is_wide ? "compatible" : "reproduced";
+}
+
 Verdict not_comparable(Value why) { return {{}, {}, {}, "not comparable", std::move(why)}; }
 
 std::optional<double> radius_of(const std::string& column, const Row& row, const std::vector<Column>& columns) {
@@ -117,13 +149,23 @@ Verdict judge_figure(const Claim& claim, const Selector& selector, const std::ve
   if (!low || !high) return not_comparable(why_missing(low ? claim.high : claim.low));
   const double stated = std::get<double>(claim.stated);
   const bool meets = *low <= stated + claim.resolution / 2 && stated - claim.resolution / 2 <= *high;
-  return {*measured, *low, *high, meets ? "reproduced" : "contradicted", stated_why(claim)};
+  constexpr double widest = 10;
+  const bool is_spread = !claim.low.empty() && !claim.high.empty();
+  const bool is_wide = is_spread && !(*low > 0 && *high <= widest * *low);
+  return {*measured,
+          *low,
+          *high,
+          word_for(claim.kind, meets, is_wide),
+          stated_why(claim),
+          claim.measured,
+          is_spread ? claim.low + " to " + claim.high : "give or take its radius",
+          claim.percentile.empty() ? Value() : cell(row, claim.percentile)};
 }
 
 /// What the rows selected say of a bound.
 struct BoundFindings {
-  std::vector<double> values;  ///< ascending
-  Value missing;               ///< why a value is missing, if one is
+  std::vector<std::pair<double, const Row*>> values;  ///< ascending
+  Value missing;                                      ///< why a value is missing, if one is
 };
 
 /// Refused rows say nothing unless there are no others.
@@ -134,27 +176,50 @@ BoundFindings collect(const std::vector<Row>& rows, const Selector& selector, co
   for (const Row* row : selected) {
     const auto value = as_number(cell(*row, column));
     if (value)
-      findings.values.push_back(*value);
+      findings.values.emplace_back(*value, row);
     else if (!is_refused(*row))
       findings.missing = why_missing(column);
   }
   if (findings.values.empty() && findings.missing == Value()) findings.missing = why_refused(*selected.front());
-  std::sort(findings.values.begin(), findings.values.end());
+  std::stable_sort(findings.values.begin(), findings.values.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   return findings;
 }
 
-double worst(const BoundFindings& findings, const Bound& bound) {
-  return bound.at_least ? findings.values.front() : findings.values.back();
+/// How far a value is inside of a bound; negative: it breaks it.
+double margin(double value, const Bound& bound) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  return std::min(bound.at_least ? value - *bound.at_least : infinity,
+                  bound.at_most ? *bound.at_most - value : infinity);
 }
 
-bool holds(double value, const Bound& bound) { return bound.at_least ? value >= bound.limit : value <= bound.limit; }
+/// The one that comes closest to breaking the bound, or breaks it most.
+const std::pair<double, const Row*>& worst(const BoundFindings& findings, const Bound& bound) {
+  const auto& [first, last] = std::tie(findings.values.front(), findings.values.back());
+  return margin(first.first, bound) <= margin(last.first, bound) ? first : last;
+}
+
+bool holds(double value, const Bound& bound) { return margin(value, bound) >= 0; }
 
 Verdict judge_sentence(const Claim& claim, const Selector& selector, const Bound& test, const std::vector<Row>& rows) {
   const auto findings = collect(rows, selector, test.column);
   if (findings.missing != Value()) return not_comparable(findings.missing);
-  const double measured = worst(findings, test);
-  return {measured, findings.values.front(), findings.values.back(),
-          holds(measured, test) ? "reproduced" : "contradicted", stated_why(claim)};
+  const auto& [tested, row] = worst(findings, test);
+  Verdict verdict{
+      tested,
+      findings.values.front().first,
+      findings.values.back().first,
+      word_for(claim.kind, holds(tested, test), false),
+      stated_why(claim),
+      test.column,
+      findings.values.size() == 1 ? "the one row" : fmt::format("extremes of {} rows", findings.values.size())};
+  if (claim.measured.empty()) return verdict;
+  verdict.column = claim.measured;
+  verdict.range = claim.low + " to " + claim.high;
+  verdict.measured = cell(*row, claim.measured);
+  verdict.low = cell(*row, claim.low);
+  verdict.high = cell(*row, claim.high);
+  return verdict;
 }
 
 }  // namespace
@@ -188,6 +253,27 @@ std::optional<Selector> read_otherwise(const JsonReader& json, const RowNames& n
 
 }  // namespace
 
+namespace {
+
+/// The members that every claim may have, and those of its form.
+void only(const JsonReader& json, std::vector<std::string_view> members) {
+  members.insert(members.end(), {"claim", "part", "kind", "stated", "why"});
+  members.insert(members.end(), claim_terms.begin(), claim_terms.end());
+  json.only(members);
+}
+
+const Criterion* read_criterion(const JsonReader& json) {
+  const auto stated = json.find("criterion");
+  if (!stated) return nullptr;
+  std::vector<std::string_view> allowed;
+  for (const Criterion& criterion : criteria()) allowed.push_back(criterion.name);
+  const std::string name = stated->word(allowed);
+  return &*std::find_if(criteria().begin(), criteria().end(),
+                        [&name](const Criterion& criterion) { return criterion.name == name; });
+}
+
+}  // namespace
+
 Claim read_claim(const JsonReader& json, const RowNames& names) {
   Claim claim;
   claim.name = json.at("claim").text();
@@ -198,20 +284,34 @@ Claim read_claim(const JsonReader& json, const RowNames& names) {
     claim.stated = stated.text();
   if (const auto why = json.find("why")) claim.why = why->text();
   if (const auto part = json.find("part")) claim.part = part->text();
+  if (const auto kind = json.find("kind")) {
+    const std::string word = kind->word({statement_kinds.begin(), statement_kinds.end()});
+    claim.kind = static_cast<StatementKind>(std::find(statement_kinds.begin(), statement_kinds.end(), word) -
+                                            statement_kinds.begin());
+  }
+  for (const std::string_view term : claim_terms)
+    if (const auto text = json.find(term)) claim.terms.emplace_back(term, text->text());
+  const Criterion* const criterion = read_criterion(json);
   if (stated.is_number() && json.find("row")) {
-    json.only({"claim", "part", "stated", "resolution", "row", "otherwise", "measured", "low", "high", "why"});
+    only(json, {"resolution", "row", "otherwise", "measured", "low", "high", "percentile"});
     claim.resolution = json.at("resolution").positive_number();
     claim.rows = read_selector(json.at("row"), names);
     claim.measured = read_column(json.at("measured"), names);
     if (const auto low = json.find("low")) claim.low = read_column(*low, names);
     if (const auto high = json.find("high")) claim.high = read_column(*high, names);
+    if (const auto percentile = json.find("percentile")) claim.percentile = read_column(*percentile, names);
   } else if (stated.is_string() && json.find("rows")) {
-    json.only({"claim", "part", "stated", "rows", "otherwise", "test", "why"});
+    only(json, {"rows", "otherwise", "test", "measured", "low", "high"});
     json.at("test").only({"column", "at_least", "at_most"});
     claim.rows = read_selector(json.at("rows"), names);
-    claim.test = read_bound(json.at("test"), names);
+    claim.test = read_bound(json.at("test"), names, criterion);
+    if (const auto measured = json.find("measured")) {
+      claim.measured = read_column(*measured, names);
+      claim.low = read_column(json.at("low"), names);
+      claim.high = read_column(json.at("high"), names);
+    }
   } else {
-    json.only({"claim", "part", "stated", "why"});
+    only(json, {});
     json.at("why").text();
   }
   claim.otherwise = read_otherwise(json, names);
@@ -238,10 +338,18 @@ Verdict judge(const Claim& claim, const std::vector<Row>& rows, const std::vecto
 CheckOutcome judge(const Check& check, const std::vector<Row>& rows) {
   const Answering answer = answering(check.rows, check.otherwise, rows);
   const auto findings = collect(rows, answer.rows, check.bound.column);
-  CheckOutcome outcome{false, {}, joined(answer.why, findings.missing)};
+  CheckOutcome outcome{.holds = false,
+                       .measured = {},
+                       .limit = check.bound.at_least.value_or(check.bound.at_most.value_or(0)),
+                       .why = joined(answer.why, findings.missing)};
   if (findings.values.empty()) return outcome;
-  outcome.measured = worst(findings, check.bound);
-  outcome.holds = findings.missing == Value() && holds(worst(findings, check.bound), check.bound);
+  const double measured = worst(findings, check.bound).first;
+  outcome.measured = measured;
+  outcome.holds = findings.missing == Value() && holds(measured, check.bound);
+  outcome.limit = check.bound.at_least && check.bound.at_most
+                      ? (measured - *check.bound.at_least <= *check.bound.at_most - measured ? *check.bound.at_least
+                                                                                             : *check.bound.at_most)
+                      : check.bound.at_least.value_or(check.bound.at_most.value_or(0));
   return outcome;
 }
 

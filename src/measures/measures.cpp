@@ -28,6 +28,7 @@ extern const Measure opacity_recursion_measure;
 extern const Measure optimal_table_measure;
 extern const Measure orders_measure;
 extern const Measure partial_pre_integration_measure;
+extern const Measure printed_figures_measure;
 extern const Measure reference_proof_measure;
 extern const Measure second_order_table_measure;
 extern const Measure shading_integrals_measure;
@@ -89,6 +90,7 @@ std::span<const Measure* const> measures() {
       &table_pareto_measure,
       &images_measure,
       &costs_measure,
+      &printed_figures_measure,
       &error_waterfall_measure,
       &optimal_table_measure,
   };

@@ -121,18 +121,30 @@ void compare_rows(const JsonReader& before, const JsonReader& after, Differences
 /// Differences of one member of the statements (claims, checks) that both results name alike.
 Json compare_statements(const JsonReader& before, const JsonReader& after, const char* list, const char* name,
                         const char* member) {
-  std::map<std::string, Json> old;
+  // A claim of several parts is several statements; a key that comes twice is told apart by its number.
+  std::map<Json, std::vector<Json>> old;
+  const auto key_of = [name](const JsonReader& statement) {
+    Json key{{name, statement.at(name).json()}};
+    if (const auto part = statement.find("part")) key["part"] = part->json();
+    return key;
+  };
+  const auto change = [](Json key, const Json& was, const Json& is) {
+    key.update({{"before", was}, {"after", is}});
+    return key;
+  };
   for (const JsonReader& statement : before.at(list).items(0))
-    old[statement.at(name).text()] = statement.at(member).json();
+    old[key_of(statement)].push_back(statement.at(member).json());
   Json changes = Json::array();
   for (const JsonReader& statement : after.at(list).items(0)) {
-    const auto found = old.find(statement.at(name).text());
-    const Json was = found == old.end() ? Json() : found->second;
+    const Json key = key_of(statement);
     const Json& is = statement.at(member).json();
-    if (was != is) changes.push_back({{name, statement.at(name).json()}, {"before", was}, {"after", is}});
-    if (found != old.end()) old.erase(found);
+    auto& alike = old[key];
+    const Json was = alike.empty() ? Json() : alike.front();
+    if (!alike.empty()) alike.erase(alike.begin());
+    if (was != is) changes.push_back(change(key, was, is));
   }
-  for (const auto& [text, was] : old) changes.push_back({{name, text}, {"before", was}, {"after", nullptr}});
+  for (const auto& [key, left] : old)
+    for (const Json& was : left) changes.push_back(change(key, was, nullptr));
   return changes;
 }
 
@@ -162,8 +174,9 @@ std::string readable(const Differences& differences) {
     text += fmt::format("changed {} {}: {} -> {}\n", change["row"].dump(), change["column"].get<std::string>(),
                         change["before"].dump(), change["after"].dump());
   for (const Json& change : differences.verdicts)
-    text += fmt::format("verdict {}: {} -> {}\n", change["claim"].get<std::string>(), change["before"].dump(),
-                        change["after"].dump());
+    text += fmt::format("verdict {}{}: {} -> {}\n", change["claim"].get<std::string>(),
+                        change.contains("part") ? fmt::format(" ({})", change["part"].get<std::string>()) : "",
+                        change["before"].dump(), change["after"].dump());
   for (const Json& change : differences.checks)
     text += fmt::format("check   {}: {} -> {}\n", change["bound"].get<std::string>(), change["before"].dump(),
                         change["after"].dump());

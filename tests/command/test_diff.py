@@ -3,7 +3,7 @@
 import json
 import unittest
 
-from support import EXPERIMENT, ProgramTest, changed
+from support import EXPERIMENT, SOURCE, ProgramTest, changed
 
 
 class Differences(ProgramTest):
@@ -69,6 +69,24 @@ class Differences(ProgramTest):
         self.assertEqual(done.returncode, 1)
         self.assertIn("verdict figure", done.stdout.decode())
         self.assertEqual(self.run_program("diff", "before.json", "after.json").returncode, 0)
+
+    def test_parts_of_a_claim_are_told_apart(self):
+        first = dict(self.result["published"][0], part="one")
+        second = dict(first, part="two", verdict="contradicted")
+        self.result["published"] = [first, second, dict(second)]
+        self.write("before.json", self.result)
+        self.assertEqual(self.diff(self.result)["verdicts"], [])
+        after = changed(self.result, "/published/1/verdict", "compatible")
+        expected = {"claim": "figure", "part": "two", "before": "contradicted", "after": "compatible"}
+        self.assertEqual(self.diff(after)["verdicts"], [expected])
+
+    def test_committed_results_do_not_differ_from_themselves(self):
+        for file in sorted(SOURCE.glob("results/*.json")):
+            if file.stem == "vectors":
+                continue
+            with self.subTest(result=file.stem):
+                same = self.output_of("diff", str(file), str(file), "--check")
+                self.assertEqual(same, "nothing changed beyond both radii\n")
 
     def test_what_is_no_result(self):
         for document, pointer in [

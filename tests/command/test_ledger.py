@@ -28,12 +28,41 @@ class Ledger(ProgramTest):
         self.assertTrue(validator("result").is_valid(ledger))
         names = list(dict.fromkeys(row["claim"] for row in ledger["rows"]))
         own = list(dict.fromkeys(claim["claim"] for claim in EXPERIMENT["published"]))
-        self.assertEqual(names, [claim["claim"] for claim in CLAIMS] + own)
+        self.assertEqual(names, [claim["claim"] for claim in CLAIMS if claim.get("kind") != "finding"] + own)
         for row in ledger["rows"]:
             judged = row["claim"] in own
             self.assertEqual(row["status"], "ok" if judged else "refused")
             self.assertEqual(row["verdict"] == "not measured", not judged)
             self.assertTrue(row["why"] or judged)
+
+    def test_a_claim_of_several_parts_counts_once(self):
+        result = self.json_of("run", self.write("experiment.json", EXPERIMENT))
+        part = next(claim for claim in result["published"] if claim["verdict"] == "reproduced")
+
+        def joint(*verdicts, kinds=()):
+            kinds = kinds or ["claim"] * len(verdicts)
+            parts = zip(verdicts, kinds)
+            published = [dict(part, part=str(i), verdict=verdict, kind=kind) for i, (verdict, kind) in enumerate(parts)]
+            self.write("parts.json", dict(result, published=published))
+            (found,) = {row["claim_verdict"] for row in self.ledger_of("parts.json")["rows"]
+                        if row["claim"] == part["claim"] and row["kind"] != "finding"} or {None}
+            return found
+
+        self.assertEqual(joint("reproduced", "reproduced"), "reproduced")
+        self.assertEqual(joint("reproduced", "contradicted"), "mixed")
+        self.assertEqual(joint("reproduced", "compatible"), "compatible")
+        self.assertEqual(joint("contradicted", "compatible"), "mixed")
+        self.assertEqual(joint("contradicted", "not comparable"), "contradicted")
+        self.assertEqual(joint("not comparable"), "not comparable")
+        self.assertEqual(joint("reproduced", "not found", kinds=["claim", "finding"]), "reproduced")
+
+    def test_every_committed_claim_says_what_decides(self):
+        for row in json.loads((SOURCE / "results/ledger.json").read_text())["rows"]:
+            with self.subTest(claim=row["claim"], part=row["part"]):
+                self.assertNotIn(row["verdict"], ("not found",))
+                if row["verdict"] in ("reproduced", "compatible", "contradicted"):
+                    self.assertTrue(row["criterion"] and row["column"] and row["range"] and row["text"] and row["place"])
+                    self.assertIsNotNone(row["unit"])
 
     def test_the_committed_ledger_is_that_of_the_committed_results(self):
         committed = json.loads((SOURCE / "results/ledger.json").read_text())
@@ -44,8 +73,13 @@ class Ledger(ProgramTest):
         self.output_of("ledger", *self.committed_results(), "-o", "ledger.json", "--page", "page.html", "--plots", plots)
         page = (self.folder / "page.html").read_text()
         for claim in CLAIMS:
-            self.assertIn(f"<h3>{claim['claim']}", page)
-        self.assertIsNone(re.search(r'(src|href)="', page))
+            self.assertIn(f'<article id="{claim["claim"]}"', page)
+        self.assertIsNone(re.search(r'src="', page))
+        for target in set(re.findall(r'href="([^"]*)"', page)):
+            if target.startswith("#"):
+                self.assertIn(f'id="{target[1:]}"', page)
+            else:
+                self.assertTrue((SOURCE / "plots" / target).resolve().is_file(), target)
         self.assertEqual(page, (SOURCE / "plots/ledger.html").read_text().replace(*self.commits(page)))
 
     def commits(self, page):

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -23,8 +24,7 @@ Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   return {};
 }
 
-/// How many of the cells that rays cross have 0, 1 and 2 turning points: sign changes of s' strictly inside. The first
-/// and the last cell of a ray are left out, since the ray crosses them in part only.
+/// How many of the cells that rays cross have 0, 1 and 2 turning points: sign changes of s' strictly inside.
 struct Cells {
   std::array<std::int64_t, 3> by_turning_points{};
   std::int64_t constant = 0;
@@ -34,9 +34,16 @@ struct Cells {
   }
 };
 
+/// The longest way through a cell, in voxels.
+constexpr double cell_diagonal = std::numbers::sqrt3;
+
+/// Counts the cells that the ray enters at least a diagonal before its end. It crosses all of these to their other
+/// border, however long the way is: to leave out those that it crosses in part would favour short ways.
 Cells cells_of(const Chain<3>& signal) {
   Cells cells;
+  const double last_entry = signal.length() - cell_diagonal;
   for (std::size_t i = 1; i + 1 < signal.pieces.size(); ++i) {
+    if (signal.pieces[i].start.high > last_entry) break;
     const auto& polynomial = signal.pieces[i].polynomial;
     ++cells.by_turning_points[polynomial.derivative().sign_changes().size()];
     const auto& b = polynomial.coefficients;
@@ -61,7 +68,8 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
   return {
       {.name = "rays", .description = "rays drawn", .cell = &Record::rays},
       {.name = "cells",
-       .description = "cells crossed from border to border; the ends of rays are left out",
+       .description =
+           "cells crossed from border to border, of those that a ray enters at least sqrt 3 voxels before its end",
        .cell = [](const Record& record) { return record.cells.count(); }},
       {.name = "cells_constant",
        .description = "of these, cells with a constant signal",

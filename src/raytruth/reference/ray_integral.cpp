@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -44,6 +45,7 @@ struct Outside {
   double color = 0;
   bool is_settled = true;  ///< halving the stretch would not help
   bool is_deadly = false;  ///< the ray ends there, if it is outside indeed
+  bool is_early = false;   ///< what may be outside is not at the stretch's end alone
 };
 
 /// How wrong they are beyond an end where the opacity is 1. There -ln(1 - a), of the interval's own function or of its
@@ -67,6 +69,8 @@ Outside beyond_opaque_end(const IntervalEnd& end, double share, double excess, d
   }
   outside.color =
       excess < brief ? end.color_jump + end.color_kink * excess : intervals.most_color() + interval.most_color;
+  // Behind the end of a ray nothing shines.
+  if (end.is_opaque_beyond) outside.color = std::max(outside.color, interval.most_color + end.color_kink * excess);
   return outside;
 }
 
@@ -80,9 +84,12 @@ Outside beyond(const IntervalEnd& end, double at_begin, double at_end, double in
   if (e == 0 && f == 0 && inside >= 0) return {};
   const double excess = std::max({e, f, -inside});
   Outside outside{.share = 64 * std::max(e, f) <= inside ? slack * (e + f) / (2.9 * inside) : 1};
-  if (end.contact_slope > 0 || end.is_opaque_beyond)
-    return beyond_opaque_end(end, outside.share, excess, std::max(at_begin, at_end), width, degree, interval,
-                             intervals);
+  if (end.contact_slope > 0 || end.is_opaque_beyond) {
+    outside =
+        beyond_opaque_end(end, outside.share, excess, std::max(at_begin, at_end), width, degree, interval, intervals);
+    outside.is_early = e > 0;
+    return outside;
+  }
   if (excess <= end.reach) {
     outside.extinction = end.extinction_jump + end.extinction_kink * excess;
     outside.color = end.color_jump + end.color_kink * excess;
@@ -108,6 +115,16 @@ double drift_of(double depth, double transmittance, double depth_error) {
   return transmittance * 2 * depth_error + (depth < 690 ? 0 : 0x1p-990);
 }
 
+/// Whether a piece that is not opaque may touch what is, so that the ray ends; or the other way round.
+struct Doubt {
+  enum class Kind { none, may_end, may_go_on, has_ended };
+  Kind kind = Kind::none;
+  /// What it may touch; where a ray has ended: the interval that it must have come from, if its colour depends on that.
+  std::optional<std::size_t> interval = {};
+  /// It may touch it anywhere, and the errors of the piece have all its light; else at its end alone.
+  bool is_throughout = false;
+};
+
 /// The part of a ray that has been integrated.
 struct Sum {
   DoubleDouble depth;
@@ -117,11 +134,36 @@ struct Sum {
   double color_error = 0;
   double nodes = 0;
   std::size_t pieces = 0;
-  double doubt = 0;           ///< light that may have been lost already, where the ray may have touched what is opaque
-  double pending = 0;         ///< the same of the last piece: none if the ray ends with it anyway
-  double end_extinction = 0;  ///< bound just behind the ray's end
+  double doubt = 0;    ///< light that may have been lost already, where the ray may have touched what is opaque
+  double pending = 0;  ///< the same of the last pieces: none if the ray ends behind them just where it may have ended
+  std::size_t pending_interval = 0;  ///< theirs
+  std::size_t pending_beyond = 0;    ///< what they may have touched
+  double end_extinction = 0;         ///< bound just behind the ray's end
 
   [[nodiscard]] bool is_opaque() const { return depth.high - depth_error > opaque_depth; }
+
+  /// What is doubtful of the next piece, in an interval; `most_seen`: of its light. Where the ray may have ended
+  /// before, that makes no difference if it ends now, in what it may have touched and with the colour that it has
+  /// there.
+  void add_doubt(const Doubt& next, std::size_t interval, double most_seen) {
+    const bool may_end = next.kind == Doubt::Kind::may_end && next.interval.has_value();
+    const bool goes_on =
+        may_end && next.is_throughout && next.interval == pending_beyond && interval == pending_interval;
+    const bool has_ended = next.kind == Doubt::Kind::has_ended && interval == pending_beyond &&
+                           next.interval.value_or(pending_interval) == pending_interval;
+    if (!goes_on && !has_ended) {
+      doubt = std::max(doubt, pending);
+      pending = 0;
+    }
+    if (may_end) {
+      pending = std::max(pending, most_seen);
+      pending_interval = interval;
+      pending_beyond = *next.interval;
+      return;
+    }
+    pending = 0;
+    if (next.kind == Doubt::Kind::may_go_on || next.kind == Doubt::Kind::may_end) doubt = std::max(doubt, most_seen);
+  }
 
   void add_color(const Vector3<double>& color_here) {
     for (int channel = 0; channel < 3; ++channel) {
@@ -188,9 +230,6 @@ struct PreciseStretch {
   std::size_t first_interval = 0;
   std::size_t last_interval = 0;
 };
-
-/// Whether a piece that is not opaque may touch what is, so that the ray ends; or the other way round.
-enum class Doubt { none, may_end, may_go_on };
 
 /// What a ray of a degree leaves behind for the next one: memory.
 template <int Degree>
@@ -468,8 +507,8 @@ void RayIntegral::Parts::fit_precisely(const PrecisePiece<Degree>& piece, Buffer
   }
 }
 
-/// Does what `accept_or_halve` does, in 106 bits. The scalar counts from the interval's origin, so that what is subtracted
-/// there costs no digits.
+/// Does what `accept_or_halve` does, in 106 bits. The scalar counts from the interval's origin, so that what is
+/// subtracted there costs no digits.
 template <int Degree>
 void RayIntegral::Parts::accept_or_halve_precisely(const PreciseStretch<Degree>& stretch, int& budget,
                                                    Buffers<Degree>& buffers) const {
@@ -549,7 +588,8 @@ void RayIntegral::Parts::accept(const std::array<Outside, 2>& ends, const Piece<
   }
   // No depth is known of a stretch within rounding of what is opaque: the ray may end there, or it may not.
   bool may_end = ends[0].is_deadly || ends[1].is_deadly;
-  if (!std::isfinite(depth_error)) {
+  const bool has_no_depth = !std::isfinite(depth_error);
+  if (has_no_depth) {
     may_end = true;
     depth_error = 0;
     color_error = std::max(ends[0].color, ends[1].color) + interval.most_color * brief;
@@ -600,7 +640,16 @@ void RayIntegral::Parts::accept(const std::array<Outside, 2>& ends, const Piece<
   buffers.color_errors[first] = color_error;
   if (intervals_.has_opaque_points()) {
     buffers.doubts.resize(buffers.intervals.size());
-    if (may_end && !interval.is_opaque) buffers.doubts.back() = Doubt::may_end;
+    if (may_end && !interval.is_opaque) {
+      Doubt doubt{.kind = Doubt::Kind::may_end, .is_throughout = has_no_depth};
+      if (ends[0].is_deadly != ends[1].is_deadly) {
+        const Outside& deadly = ends[0].is_deadly ? ends[0] : ends[1];
+        doubt.is_throughout = doubt.is_throughout || deadly.share >= 1;
+        if (doubt.is_throughout || !deadly.is_early)
+          doubt.interval = ends[0].is_deadly ? stretch.interval - 1 : stretch.interval + 1;
+      }
+      buffers.doubts.back() = doubt;
+    }
   }
 }
 
@@ -760,7 +809,11 @@ void RayIntegral::Parts::append_touching(const OpacityPiece<Degree>& piece, cons
   if (!is_known) integral.depth_error = 0;
   append(integral, contact.interval, buffers);
   buffers.doubts.resize(buffers.intervals.size());
-  if (!is_known || (end.is_opaque_beyond && !contact.is_inside)) buffers.doubts.back() = Doubt::may_end;
+  const bool may_be_beyond = end.is_opaque_beyond && !contact.is_inside;
+  if (is_known && !may_be_beyond) return;
+  Doubt doubt{.kind = Doubt::Kind::may_end, .is_throughout = true};
+  if (may_be_beyond) doubt.interval = contact.is_at_top ? contact.interval + 1 : contact.interval - 1;
+  buffers.doubts.back() = doubt;
 }
 
 /// Appends what is opaque: the ray ends at its beginning, if it `is_certain` that it is there. Inside a piece, where it
@@ -771,11 +824,16 @@ void RayIntegral::Parts::append_opaque(std::size_t interval, const NormalisedStr
                                        Buffers<Degree>& buffers) const {
   double x = 0;
   double x_error = 0;
+  Doubt doubt{.kind = is_certain ? Doubt::Kind::has_ended : Doubt::Kind::may_go_on};
   if (intervals_[interval].is_linear) {
     x = normalised.x[0][lane];
     x_error = normalised.x_error[lane];
     const double knot = x < 0.5 ? 0 : 1;
     const double distance = std::abs(x - knot);
+    if (distance < brief)
+      doubt.interval = knot == 0 ? interval - 1 : interval + 1;
+    else if (is_certain)
+      doubt.kind = Doubt::Kind::none;
     if (distance < brief) {
       // The ray may have come through the knot a moment before.
       x_error = is_certain && is_entered ? 0 : x_error + distance;
@@ -790,7 +848,7 @@ void RayIntegral::Parts::append_opaque(std::size_t interval, const NormalisedStr
          interval, buffers);
   buffers.is_over = is_certain;
   buffers.doubts.resize(buffers.intervals.size());
-  buffers.doubts.back() = is_certain ? Doubt::none : Doubt::may_go_on;
+  buffers.doubts.back() = doubt;
 }
 
 /// The integrals of all pieces, in their order along the ray.
@@ -850,11 +908,9 @@ void RayIntegral::Parts::integrate_pieces(Buffers<Degree>& buffers, Sum& sum) co
                    color.abs().maxCoeff() * (drift + transmittance * (exponential_error + 6 * unit_roundoff)));
       sum.add_color(transmittance * color);
       if (buffers.doubts.empty()) continue;
-      const Doubt doubt = buffers.doubts[first + lane];
+      const Doubt& doubt = buffers.doubts[first + lane];
       const double most_seen = std::min(1.0, transmittance + drift);
-      if (!interval.is_opaque && doubt != Doubt::may_end) sum.doubt = std::max(sum.doubt, sum.pending);
-      if (doubt == Doubt::may_go_on) sum.doubt = std::max(sum.doubt, most_seen);
-      sum.pending = doubt == Doubt::may_end ? std::max(sum.pending, most_seen) : 0;
+      sum.add_doubt(doubt, buffers.intervals[first + lane], most_seen);
     }
   }
   sum.pieces += count;

@@ -1,11 +1,13 @@
 #include "experiments/verdict.hpp"
 
+#include "raytruth/core/error.hpp"
+
 #include <gtest/gtest.h>
 
 namespace raytruth {
 namespace {
 
-const RowNames names{.columns = {"measure", "field", "scheme", "xi", "xi_p05", "xi_p95", "status", "why"},
+const RowNames names{.columns = {"measure", "field", "scheme", "xi", "xi_radius", "xi_p05", "xi_p95", "status", "why"},
                      .measures = {"signal_error"},
                      .fields = {"white", "bonsai"},
                      .transfers = {},
@@ -59,6 +61,55 @@ TEST(Claim, FigureAgainstADistribution) {
   EXPECT_EQ(verdict.verdict, "reproduced");
   EXPECT_EQ(verdict.high, Value(0.4));
   EXPECT_EQ(verdict.why, Value("spread"));
+}
+
+TEST(Claim, FigureInAWideDistributionIsCompatible) {
+  const auto between = [](const std::string& low, const std::string& kind) {
+    return judge_text(R"({"claim": "c", "stated": 0.2, "resolution": 0.001, "measured": "xi", "low": ")" + low +
+                      R"(", "high": "xi_p95", "percentile": "xi_p05", "kind": ")" + kind +
+                      R"(", "row": {"field": "white", "scheme": "order1"}})");
+  };
+  // 0.001 to 0.4, and 0.1 to 0.4.
+  EXPECT_EQ(between("xi_radius", "claim").verdict, "compatible");
+  EXPECT_EQ(between("xi_p05", "claim").verdict, "reproduced");
+  EXPECT_EQ(between("xi_radius", "internal consistency").verdict, "consistent");
+  EXPECT_EQ(between("xi_p05", "claim").percentile, Value(0.1));
+  EXPECT_EQ(between("xi_p05", "claim").range, "xi_p05 to xi_p95");
+}
+
+TEST(Claim, OfTwoSidesIsBrokenOnEither) {
+  const auto within = [](const std::string& limits) {
+    return judge_text(R"({"claim": "c", "stated": "similar", "kind": "finding", "rows": {"measure": "signal_error"},
+                          "test": {"column": "xi", )" +
+                      limits + "}}");
+  };
+  EXPECT_EQ(within(R"("at_least": 0.01, "at_most": 0.3)").verdict, "found");
+  EXPECT_EQ(within(R"("at_least": 0.1, "at_most": 0.3)").verdict, "not found");
+  EXPECT_EQ(within(R"("at_least": 0.1, "at_most": 0.3)").measured, Value(0.02));
+  EXPECT_EQ(within(R"("at_least": 0.01, "at_most": 0.1)").measured, Value(0.2));
+  EXPECT_THROW(within(R"("at_least": 0.3, "at_most": 0.1)"), InputError);
+}
+
+TEST(Claim, TakesTheLimitOfItsCriterion) {
+  const auto judged = [](const std::string& criterion) {
+    return judge_text(R"({"claim": "c", "stated": "rare", "rows": {"field": "white"}, "test": {"column": "xi"},
+                          "criterion": ")" +
+                      criterion + R"("})");
+  };
+  EXPECT_EQ(judged("rare").verdict, "contradicted");  // at most 1e-4
+  EXPECT_EQ(judged("many").verdict, "reproduced");    // at least 0.01
+  EXPECT_THROW(judged("identity"), InputError);       // has no limit
+  EXPECT_THROW(judged("taste"), InputError);          // is none
+}
+
+TEST(Claim, ShowsOtherColumnsThanTheOneTested) {
+  const Verdict verdict =
+      judge_text(R"({"claim": "c", "stated": "rare", "rows": {"field": "white"}, "measured": "xi", "low": "xi_p05",
+                     "high": "xi_p95", "test": {"column": "xi_p95", "at_most": 0.1}})");
+  EXPECT_EQ(verdict.verdict, "contradicted");
+  EXPECT_EQ(verdict.column, "xi");
+  EXPECT_EQ(verdict.low, Value(0.1));
+  EXPECT_EQ(verdict.high, Value(0.4));
 }
 
 TEST(Claim, IsNotComparableWithoutARowOfItsOwn) {

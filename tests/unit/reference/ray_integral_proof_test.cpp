@@ -118,6 +118,18 @@ TEST(RayIntegralProof, SmoothOpacityPieces) {
   }
 }
 
+/// A ray that touches what is opaque, or does not, by less than a rounding, and then meets it in another colour; and one
+/// that comes into it along a tangent: what it would have emitted until then is in doubt, not a difference of colours.
+TEST(RayIntegralProof, ContactsWithWhatIsOpaque) {
+  for (const std::uint64_t index : {178U, 196U}) {
+    const IntegralCase asked = random_opacity_case(SignalShape::tangent, OpacityShape::opaque, 1, index);
+    for (const Emission emission : both_emissions) {
+      SCOPED_TRACE(testing::Message() << "case " << index << ", " << name(emission));
+      expect_agreement(reference(asked, emission), arb(asked, emission));
+    }
+  }
+}
+
 /// The comparison itself can fail.
 TEST(RayIntegralProof, SeesASmallMistake) {
   const IntegralCase asked = smooth_piece(seed, 0);
