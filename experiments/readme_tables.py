@@ -68,7 +68,7 @@ def criteria(results):
     return table(["criterion", "it holds where", "reason"], [[row["name"], row["sentence"], row["reason"]] for row in rows])
 
 
-AGGREGATES = {"min": min, "max": max, "median": statistics.median, "count": len, "one": lambda values: single(values)}
+AGGREGATES = {"min": min, "max": max, "sum": sum, "median": statistics.median, "count": len, "one": lambda values: single(values)}
 FIGURE = re.compile(r"(?P<number>[^\s(]+?)<!-- (?P<where>[^>]*?) \| (?P<how>[^>|]*?) -->")
 
 
