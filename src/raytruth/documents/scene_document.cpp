@@ -180,14 +180,19 @@ SceneShading read_shading(const JsonReader& json) {
   if (!(norm > 0) || !std::isfinite(norm)) json.at("light").refuse_value("a direction");
   shading.lighting.light = light / norm;
   if (const auto gooch = json.find("gooch")) {
-    json.only({"method", "light", "gooch", "normal"});
+    json.only({"method", "light", "gooch", "normal", "gradient", "virtual_normals"});
     shading.gooch = read_gooch(*gooch);
   } else {
-    json.only({"method", "light", "ambient", "diffuse", "specular", "shininess", "highlight", "negative", "normal"});
+    json.only({"method", "light", "ambient", "diffuse", "specular", "shininess", "highlight", "negative", "normal",
+               "gradient", "virtual_normals"});
     read_lighting(json, shading.lighting);
   }
   if (const auto normal = json.find("normal"))
     shading.is_along_gradient = normal->word({"minus_gradient", "gradient"}) == "gradient";
+  if (const auto gradient = json.find("gradient"))
+    shading.gradient = read_word<GradientKind>(*gradient, gradient_kind_names);
+  if (const auto normals = json.find("virtual_normals"))
+    shading.virtual_normals = read_word<VirtualNormals>(*normals, virtual_normals_names);
   return shading;
 }
 
