@@ -29,6 +29,7 @@ extern const Measure optimal_table_measure;
 extern const Measure orders_measure;
 extern const Measure partial_pre_integration_measure;
 extern const Measure reference_proof_measure;
+extern const Measure second_order_distance_measure;
 extern const Measure second_order_table_measure;
 extern const Measure shading_integrals_measure;
 extern const Measure signal_error_measure;
@@ -85,6 +86,7 @@ std::span<const Measure* const> measures() {
       &table_error_map_measure,
       &table_formats_measure,
       &second_order_table_measure,
+      &second_order_distance_measure,
       &partial_pre_integration_measure,
       &table_pareto_measure,
       &images_measure,
