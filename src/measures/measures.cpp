@@ -17,11 +17,13 @@ extern const Measure frequency_response_measure;
 extern const Measure gl_functions_measure;
 extern const Measure gl_rays_measure;
 extern const Measure gl_renderer_measure;
+extern const Measure gooch_tones_measure;
 extern const Measure gradient_angles_measure;
 extern const Measure images_measure;
 extern const Measure integral_orders_measure;
 extern const Measure iterations_measure;
 extern const Measure minmax_bounds_measure;
+extern const Measure mirrored_gradient_measure;
 extern const Measure normal_curves_measure;
 extern const Measure opacity_conventions_measure;
 extern const Measure opacity_recursion_measure;
@@ -76,6 +78,8 @@ std::span<const Measure* const> measures() {
       &gradient_angles_measure,
       &slab_shading_measure,
       &clamps_measure,
+      &mirrored_gradient_measure,
+      &gooch_tones_measure,
       &shading_integrals_measure,
       &gl_functions_measure,
       &gl_rays_measure,
