@@ -156,10 +156,11 @@ class Images(ProgramTest):
         return numpy.frombuffer(data, "<f4").reshape(12, 20, 3)[::-1].astype(float)
 
     def test_stripes_at_the_borders_of_slabs(self):
-        """Of a ramp seen askew, whose samples are held for a step: all that is wrong follows the depth's place in the step."""
-        side = 24
-        numpy.save(self.folder / "ramp.npy", numpy.broadcast_to(numpy.arange(side, dtype="<f8"), (side, side, side)).copy())
-        points = [{"s": s, "extinction": e, "color": [1, 1, 1]} for s, e in ((0, 0), (8.3, 0), (8.3, 4))]
+        """Of a plane that is askew, whose samples are held for a step: all that is wrong follows its place in the step."""
+        z, y, x = numpy.indices((24, 24, 24)).astype("<f8")
+        numpy.save(self.folder / "ramp.npy", x + 0.5 * y + 0.3 * z)
+        # Its scalars become 0 to 1. From the surface on it turns from white to black.
+        points = [{"s": s, "extinction": e, "color": [c] * 3} for s, e, c in ((0, 0, 1), (0.46, 0, 1), (0.46, 2000, 1), (0.56, 2000, 0))]
         ramp = json.loads(json.dumps(EXPERIMENT))
         ramp["fields"] = [{"name": "signal", "kind": "volume", "volume": "ramp.npy", "spacing": [1, 1, 1]}]
         ramp["transfer_functions"][0]["transfer_function"] = {"points": points}
@@ -176,12 +177,11 @@ class Images(ProgramTest):
         self.write("images.json", json.dumps(ramp))
         self.result = self.json_of("run", "images.json")
         held, exact, cells = (self.row(variant=name, against="certified", frame="linear") for name in ("held", "exact", "cells"))
-        # The first sample in matter lies 0 to 1 behind its surface. Held from there on it is too dark by what a part of a
-        # step shines: at most 1 - exp(-4), the jump from a sample that is just in matter to one that just is not.
+        # The first sample in matter lies 0 to 1 behind its surface, so all colours are taken from so far behind.
         self.assertGreater(held["slab_banding"], 0.98)
         self.assertGreater(held["slab_windows"], 1)
-        self.assertAlmostEqual(held["slab_banding_amplitude"], held["rmse"], delta=held["rmse"])
-        self.assertGreater(held["slab_jump"], 0.01)
+        self.assertGreater(held["slab_jump"], 0.1)
+        self.assertLess(held["slab_jump"], 2 * held["maximum"])
         self.assertLess(exact["rmse"], 1e-9)  # the ramp is a line along every ray
         self.assertIsNone(cells.get("slab_banding"))  # no step
         measure["slab_banding_window"] = 41

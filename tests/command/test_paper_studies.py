@@ -62,7 +62,7 @@ class Studies(ProgramTest):
             self.assertLess(abs(rows["linear_gradient", angle]["color_min"]), 1e-15)  # unit length at both ends
 
     def test_distances_of_second_order_tables(self):
-        options = {"kind": "second_order_distance", "shapes": ["ramp"], "optical_depths": [1], "sizes": [8], "distances": [9, 17, 33], "look_ups": 64}
+        options = {"kind": "second_order_distance", "shapes": ["ramp"], "optical_depths": [1], "sizes": [8], "distances": [9, 17, 33], "look_ups": 512}
         rows = {(row["distance_axis"], row["distances"]): row for row in self.rows(options)}
         for (axis, count), row in rows.items():
             self.assertEqual(row["bytes_unorm8"], 4 * 8**3 * count)

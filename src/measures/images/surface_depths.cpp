@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <variant>
 
 namespace raytruth {
@@ -20,27 +21,69 @@ namespace raytruth {
 namespace {
 
 constexpr double longest_step = 1.0 / 64;
+constexpr double shortest_step = 0x1p-20;
+constexpr double largest_change = 1e-3;  // of the extinction in a step, times its length
+constexpr double half_of_the_light = std::numbers::ln2;
+
+/// Follows a piece of a ray until half of the light is absorbed.
+template <int Degree>
+class Follower {
+ public:
+  Follower(const OpticsLookup<double>& look_up, double& optical_depth)
+      : look_up_(look_up), optical_depth_(optical_depth) {}
+
+  /// Where in the piece this is, in smallest spacings behind its front; none if it is not.
+  std::optional<double> operator()(const Bernstein<Degree>& scalar, double length) {
+    const int steps = std::max(1, static_cast<int>(std::ceil(length / longest_step)));
+    Place front = place(scalar, 0);
+    for (int i = 1; i <= steps; ++i) {
+      const Place back = place(scalar, static_cast<double>(i) / steps);
+      if (const auto found = in_step(scalar, length, front, back)) return found;
+      front = back;
+    }
+    return {};
+  }
+
+ private:
+  struct Place {
+    double u;
+    double extinction;
+  };
+
+  [[nodiscard]] Place place(const Bernstein<Degree>& scalar, double u) const {
+    return {u, look_up_(scalar.value(u))[3]};
+  }
+
+  /// Steps are halved where the extinction changes much, and where half of the light is reached.
+  std::optional<double> in_step(const Bernstein<Degree>& scalar, double length, const Place& front, const Place& back) {
+    const double width = (back.u - front.u) * length;
+    const double of_step = width * (front.extinction + back.extinction) / 2;
+    const bool ends_here = optical_depth_ + of_step >= half_of_the_light;
+    const bool changes = std::abs(back.extinction - front.extinction) * width > largest_change;
+    if (width > shortest_step && (ends_here || changes)) {
+      const Place middle = place(scalar, front.u + (back.u - front.u) / 2);
+      if (const auto found = in_step(scalar, length, front, middle)) return found;
+      return in_step(scalar, length, middle, back);
+    }
+    if (ends_here) return front.u * length + width * (half_of_the_light - optical_depth_) / of_step;
+    optical_depth_ += of_step;
+    return {};
+  }
+
+  const OpticsLookup<double>& look_up_;
+  double& optical_depth_;
+};
 
 /// Where the chain has absorbed half of the light.
 template <int Degree>
 double surface_depth(const Chain<Degree>& chain, const ClearScalars& clear, const OpticsLookup<double>& look_up) {
   double optical_depth = 0;
+  Follower<Degree> follow(look_up, optical_depth);
   for (const auto& piece : chain.pieces) {
     const auto [low, high] =
         std::minmax_element(piece.polynomial.coefficients.begin(), piece.polynomial.coefficients.end());
     if (clear.contain(*low, *high)) continue;
-    const int steps = std::max(1, static_cast<int>(std::ceil(piece.length / longest_step)));
-    double front = look_up(piece.polynomial.value(0))[3];
-    for (int i = 1; i <= steps; ++i) {
-      const double back = look_up(piece.polynomial.value(static_cast<double>(i) / steps))[3];
-      const double of_step = piece.length / steps * (front + back) / 2;
-      if (optical_depth + of_step >= std::numbers::ln2) {
-        const double share = (std::numbers::ln2 - optical_depth) / of_step;
-        return static_cast<double>(piece.start) + piece.length * (i - 1 + share) / steps;
-      }
-      optical_depth += of_step;
-      front = back;
-    }
+    if (const auto found = follow(piece.polynomial, piece.length)) return static_cast<double>(piece.start) + *found;
   }
   return std::numeric_limits<double>::quiet_NaN();
 }
