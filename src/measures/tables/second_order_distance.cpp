@@ -5,12 +5,14 @@
 #include "raytruth/tables/second_order.hpp"
 #include "raytruth/transfer/emission.hpp"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -68,22 +70,22 @@ Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   return options;
 }
 
-/// Slabs of any length, each length's made when it is first asked for.
+/// Slabs of any length; what those of a table's distances need is kept. One object per thread.
 class Slabs {
  public:
   Slabs(const PiecewiseLinear& transfer, const TableAxes& axes) : transfer_(transfer), axes_(axes) {}
 
-  Certified certified(const std::array<double, 3>& scalars, double length) {
-    TableAxes axes = axes_;
-    axes.length = length;
-    return SecondOrderSlabs(transfer_, axes, Emission::associated).certified(scalars);
+  [[nodiscard]] Certified certified(const std::array<double, 3>& scalars, double length) const {
+    return of_length(length).certified(scalars);
   }
 
   /// As the distance axis looks it up, its entries exact.
   Vec4 at(const DistanceAxis& axis, const std::array<double, 3>& scalars, double length) {
     const auto entry = [&](double distance) -> Vec4 {
       if (distance == 0) return Vec4::Zero();
-      const Certified slab = certified(scalars, distance);
+      auto kept = kept_.find(distance);
+      if (kept == kept_.end()) kept = kept_.emplace(distance, of_length(distance)).first;
+      const Certified slab = kept->second.certified(scalars);
       return {slab.color[0], slab.color[1], slab.color[2], slab.opacity};
     };
     if (axis.distances.size() == 1) {
@@ -101,9 +103,16 @@ class Slabs {
   }
 
  private:
+  [[nodiscard]] SecondOrderSlabs of_length(double length) const {
+    TableAxes axes = axes_;
+    axes.length = length;
+    return {transfer_, axes, Emission::associated};
+  }
+
   const PiecewiseLinear& transfer_;
   TableAxes axes_;
   Rules<double> rules_;
+  std::map<double, SecondOrderSlabs> kept_;
 };
 
 /// The errors of a place: of its distance alone, the scalars being exact, and of the whole look-up.
@@ -137,9 +146,9 @@ LookedUp look_up(const Options& options, const TableAxes& axes, Slabs& slabs, co
 std::vector<LookedUp> look_up_all(const Options& options, const TableAxes& axes, const PiecewiseLinear& transfer,
                                   std::uint64_t seed) {
   std::vector<LookedUp> all(options.look_ups);
+  tbb::enumerable_thread_specific<Slabs> slabs([&] { return Slabs(transfer, axes); });
   tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
-    Slabs slabs(transfer, axes);
-    all[i] = look_up(options, axes, slabs, random_numbers(seed, RandomStream::points, i));
+    all[i] = look_up(options, axes, slabs.local(), random_numbers(seed, RandomStream::points, i));
   });
   return all;
 }
