@@ -17,11 +17,13 @@ extern const Measure frequency_response_measure;
 extern const Measure gl_functions_measure;
 extern const Measure gl_rays_measure;
 extern const Measure gl_renderer_measure;
+extern const Measure gooch_tones_measure;
 extern const Measure gradient_angles_measure;
 extern const Measure images_measure;
 extern const Measure integral_orders_measure;
 extern const Measure iterations_measure;
 extern const Measure minmax_bounds_measure;
+extern const Measure mirrored_gradient_measure;
 extern const Measure normal_curves_measure;
 extern const Measure opacity_conventions_measure;
 extern const Measure opacity_recursion_measure;
@@ -30,6 +32,7 @@ extern const Measure orders_measure;
 extern const Measure partial_pre_integration_measure;
 extern const Measure printed_figures_measure;
 extern const Measure reference_proof_measure;
+extern const Measure second_order_distance_measure;
 extern const Measure second_order_table_measure;
 extern const Measure shading_integrals_measure;
 extern const Measure signal_error_measure;
@@ -76,6 +79,8 @@ std::span<const Measure* const> measures() {
       &gradient_angles_measure,
       &slab_shading_measure,
       &clamps_measure,
+      &mirrored_gradient_measure,
+      &gooch_tones_measure,
       &shading_integrals_measure,
       &gl_functions_measure,
       &gl_rays_measure,
@@ -86,6 +91,7 @@ std::span<const Measure* const> measures() {
       &table_error_map_measure,
       &table_formats_measure,
       &second_order_table_measure,
+      &second_order_distance_measure,
       &partial_pre_integration_measure,
       &table_pareto_measure,
       &images_measure,

@@ -155,6 +155,39 @@ class Images(ProgramTest):
         self.assertEqual((header, size, float(scale) < 0), (b"PF", b"20 12", True))
         return numpy.frombuffer(data, "<f4").reshape(12, 20, 3)[::-1].astype(float)
 
+    def test_stripes_at_the_borders_of_slabs(self):
+        """Of a plane that is askew, whose samples are held for a step: all that is wrong follows its place in the step."""
+        z, y, x = numpy.indices((24, 24, 24)).astype("<f8")
+        numpy.save(self.folder / "ramp.npy", x + 0.5 * y + 0.3 * z)
+        # Its scalars become 0 to 1. From the surface on it turns from white to black.
+        points = [{"s": s, "extinction": e, "color": [c] * 3} for s, e, c in ((0, 0, 1), (0.46, 0, 1), (0.46, 2000, 1), (0.56, 2000, 0))]
+        ramp = json.loads(json.dumps(EXPERIMENT))
+        ramp["fields"] = [{"name": "signal", "kind": "volume", "volume": "ramp.npy", "spacing": [1, 1, 1]}]
+        ramp["transfer_functions"][0]["transfer_function"] = {"points": points}
+        (measure,) = ramp["measures"]
+        measure["size"] = [40, 40]
+        measure["views"][0]["camera"] = {"kind": "orthographic", "from": [-1, 0.33, 0.21], "up": [0, 0, 1], "height": 0.3}
+        measure["variants"] = [
+            {"name": "held", "scheme": "riemann_left", "step": 1}, {"name": "exact", "scheme": "order1", "step": 1},
+            {"name": "cells", "scheme": "order0_mid", "sampling": "cells"},
+        ]
+        for key in ("against", "baselines", "pictures"):
+            measure.pop(key)
+        measure["slab_banding_window"] = 20
+        self.write("images.json", json.dumps(ramp))
+        self.result = self.json_of("run", "images.json")
+        held, exact, cells = (self.row(variant=name, against="certified", frame="linear") for name in ("held", "exact", "cells"))
+        # The first sample in matter lies 0 to 1 behind its surface, so all colours are taken from so far behind.
+        self.assertGreater(held["slab_banding"], 0.98)
+        self.assertGreater(held["slab_windows"], 1)
+        self.assertGreater(held["slab_jump"], 0.1)
+        self.assertLess(held["slab_jump"], 2 * held["maximum"])
+        self.assertLess(exact["rmse"], 1e-9)  # the ramp is a line along every ray
+        self.assertIsNone(cells.get("slab_banding"))  # no step
+        measure["slab_banding_window"] = 41
+        self.write("images.json", json.dumps(ramp))
+        self.assert_refused(self.run_program("run", "images.json"), "/measures/0/slab_banding_window: ")
+
     def test_refuses_bad_variants_with_their_place(self):
         for change, place in (({"scheme": "best"}, "scheme"), ({"table": {"size": 1}}, "table/size"), ({"volume": "x"}, "volume")):
             bad = json.loads(json.dumps(EXPERIMENT))

@@ -251,6 +251,18 @@ class Images(ProgramTest):
                 numpy.testing.assert_allclose(image[0, 0], [opacity * (0.1 + 0.8 * 0.6)] * 3 + [opacity], rtol=1e-6)
                 self.assertEqual("measured_radius" in answer, scheme == "reference")
                 self.assertNotIn("error_bound", answer)
+        # So do all gradients at samples, and all curves through them.
+        light = {key: value for key, value in shading.items() if key != "method"}
+        for scheme, change in (
+            ("riemann_mid", {"gradient": "differences"}), ("riemann_mid", {"gradient": "analytic"}),
+            *(("sampled_virtual_catmull_rom_3", {"virtual_normals": kind}) for kind in ("catmull_rom", "catmull_rom_unit", "linear")),
+            ("order1", {"method": "quadratic_arc", "gradient": "analytic"}),
+        ):
+            for reconstruction in ("trilinear", "bspline"):
+                with self.subTest(scheme=scheme, change=change, reconstruction=reconstruction):
+                    options = {"scheme": scheme, "reconstruction": reconstruction, "shading": {**light, **change}}
+                    _, image = self.render({**scene, **options})
+                    numpy.testing.assert_allclose(image[0, 0], [opacity * (0.1 + 0.8 * 0.6)] * 3 + [opacity], rtol=1e-6)
         # Gooch's tones at the cosine 0.6: the colour is 1.
         gooch = {"light": [-3, 4, 0], "gooch": {"cool": [0, 0, 0.4], "warm": [0.4, 0.4, 0], "cool_share": 0.2, "warm_share": 0.6}}
         _, image = self.render({**scene, "scheme": "reference", "shading": gooch})
@@ -262,6 +274,15 @@ class Images(ProgramTest):
         shading = {"method": "quadratic_arc", "light": [0, 0, -1], "ambient": 0.25, "diffuse": 1, "specular": 1, "shininess": 10}
         _, image = self.render({**scene, "scheme": "order1", "step": 0.5, "shading": shading})
         numpy.testing.assert_allclose(image[0, 0, :3], 0.25 * (1 - numpy.exp(-2)) * numpy.array([1, 0.5, 0.25]), rtol=1e-6)
+
+    def test_samples_lie_where_the_scene_says(self):
+        for scheme in ("order1", "order2", "order0_mid", "trapezoid"):
+            scene = {**NOISE, "scheme": scheme}
+            _, cells = self.render({**scene, "sampling": "cells"})
+            numpy.testing.assert_array_equal(cells, self.render(scene)[1])
+            _, stepped = self.render({**scene, "sampling": "constant", "step": 0.7})
+            numpy.testing.assert_array_equal(stepped, self.render({**scene, "step": 0.7})[1])
+            self.assertGreater(abs(cells - stepped).max(), 1e-4)
 
     def test_the_same_bytes_on_any_number_of_threads(self):
         for scheme, options in (("reference", {}), ("cell_cubic", {}), ("order1", {"step": 1, "table": {"size": 64}})):
@@ -329,6 +350,8 @@ class Refusals(ProgramTest):
         ("/camera/height", 0, "> 0"),
         ("/scheme", "order4", "perhaps order"),
         ("/step", -1, "> 0"),
+        ("/sampling", "constant", "step"),
+        ("/sampling", "adaptive", "cells"),
         ("/table", {"size": 64}, "order2"),
         ("/shading", {"method": "quadratic_arc"}, "light"),
         ("/shading", {"light": [0, 0, 0]}, "direction"),
@@ -368,6 +391,15 @@ class Refusals(ProgramTest):
         for scheme in ("virtual_catmull_rom", "sampled_virtual_catmull_rom_3"):  # they need equal steps
             done = self.run_program("render", self.write("s.json", {**SCENE, "scheme": scheme}), "-o", "i.npy")
             self.assert_refused(done, "s.json", "/scheme", scheme)
+            done = self.run_program("render", self.write("s.json", {**SCENE, "scheme": scheme, "sampling": "cells"}), "-o", "i.npy")
+            self.assert_refused(done, "s.json", "/scheme", scheme)
+        done = self.run_program("render", self.write("s.json", {**SCENE, "scheme": "order1", "sampling": "cells", "step": 1}), "-o", "i.npy")
+        self.assert_refused(done, "s.json", "/step", "sampling cells")
+        light = {"light": [0, 0, -1], "ambient": 0.25, "diffuse": 1, "specular": 1, "shininess": 10}
+        for scheme, change, word in (("reference", {"gradient": "analytic"}, "voxels"), ("order1", {"gradient": "differences"}, "voxels"),
+                                     ("riemann_mid", {"virtual_normals": "linear"}, "virtual"), ("order1", {"virtual_normals": "cubic"}, "catmull_rom")):
+            done = self.run_program("render", self.write("s.json", {**SCENE, "scheme": scheme, "step": 1, "shading": {**light, **change}}), "-o", "i.npy")
+            self.assert_refused(done, "s.json", word)
         done = self.run_program("render", self.write("s.json", {**SCENE, "scheme": "cell_cubic", "reconstruction": "bspline"}), "-o", "i.npy")
         self.assert_refused(done, "trilinear")
 

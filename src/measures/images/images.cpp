@@ -3,9 +3,12 @@
 #include "measures/images/pictures.hpp"
 #include "measures/images/skipped_slabs.hpp"
 #include "measures/images/studied_view.hpp"
+#include "measures/images/surface_depths.hpp"
 #include "raytruth/images/image_error.hpp"
 #include "raytruth/metrics/banding.hpp"
+#include "raytruth/metrics/slab_banding.hpp"
 #include "raytruth/render/renderer.hpp"
+#include "raytruth/schemes/order2.hpp"
 #include "raytruth/schemes/virtual_samples.hpp"
 
 #include <fmt/format.h>
@@ -58,9 +61,10 @@ struct Pictures {
 
 struct Options {
   std::vector<View> views;
-  std::vector<std::string> against;    ///< variants that others are compared with, beside the certified image
-  std::vector<std::string> baselines;  ///< variants that others are to be better than
-  std::optional<std::int64_t> window;  ///< in pixels, in which banding is looked for
+  std::vector<std::string> against;         ///< variants that others are compared with, beside the certified image
+  std::vector<std::string> baselines;       ///< variants that others are to be better than
+  std::optional<std::int64_t> window;       ///< in pixels, in which banding is looked for
+  std::optional<std::int64_t> slab_window;  ///< the same, for stripes at slabs' borders
   Pictures pictures;
 };
 
@@ -128,7 +132,8 @@ std::vector<std::string> read_variants(const JsonReader& json, std::vector<View>
 }
 
 Options read_options(const Experiment& experiment, const JsonReader& json) {
-  json.only({"kind", "size", "views", "variants", "against", "baselines", "banding_window", "pictures"});
+  json.only({"kind", "size", "views", "variants", "against", "baselines", "banding_window", "slab_banding_window",
+             "pictures"});
   Options options;
   const auto size = read_image_size(json.at("size"));
   for (const JsonReader& item : json.at("views").items())
@@ -137,6 +142,8 @@ Options read_options(const Experiment& experiment, const JsonReader& json) {
   const std::vector<std::string_view> variants(names.begin(), names.end());
   if (const auto window = json.find("banding_window"))
     options.window = window->integer(least_banding_window, std::min(size[0], size[1]));
+  if (const auto window = json.find("slab_banding_window"))
+    options.slab_window = window->integer(least_banding_window, std::min(size[0], size[1]));
   if (const auto against = json.find("against")) options.against = read_words(*against, variants);
   if (const auto baselines = json.find("baselines")) options.baselines = read_words(*baselines, variants);
   if (const auto pictures = json.find("pictures")) {
@@ -203,6 +210,7 @@ struct Comparison {
   std::optional<ShownError> shown = {};
   std::optional<RelativeError> relative = {};             ///< none where the truth is too uncertain
   std::optional<BandingFound> banding = {};               ///< none of frames, or where it is not asked for
+  std::optional<SlabBanding> slab_banding = {};           ///< likewise, and where no window tells it
   double radius = 0;                                      ///< of the reference, the largest
   std::optional<double> order = {};                       ///< from the next coarser variant, if there is one
   std::vector<std::optional<double>> gains = {};          ///< dB, by baseline
@@ -241,6 +249,7 @@ class ViewStudy {
       Image frame = stored_frame(image);
       images_.push_back({&variant, std::move(image), std::move(frame)});
     }
+    if (options.slab_window) depths_ = surface_depths(scene_of(view, view.truth, experiment, grid));
     add_certified();
     for (const Rendered& rendered : images_) add_comparisons(experiment, rendered, grid);
     add_pictures();
@@ -311,6 +320,7 @@ class ViewStudy {
       found.relative = {.percent = 100 * *error.relative,
                         .radius = 100 * (1 + *error.relative) * 3 * radii / (light - 3 * radii)};
     if (options_.window && !found.is_frame) found.banding = banding_of(rendered, reference);
+    if (options_.slab_window && !found.is_frame) found.slab_banding = slab_banding_of(rendered, reference);
     if (radii > 0) found.radius = largest_radius();
     if (const double coarse = rmse_of(image_of(coarser(view_.variants, variant))); coarse > 0 && error.rmse > 0)
       found.order = std::log2(coarse / error.rmse);
@@ -354,6 +364,16 @@ class ViewStudy {
           gain = 20 * std::log10(amplitude / found.banding.amplitude);
     }
     return found;
+  }
+
+  /// None without equal steps.
+  [[nodiscard]] std::optional<SlabBanding> slab_banding_of(const Rendered& rendered, const Image& reference) const {
+    const auto& step = rendered.variant->drawing.step;
+    if (!step) return {};
+    const double length = *step * (rendered.variant->drawing.scheme == Order2::info.name ? 2 : 1);
+    std::vector<double> slabs;
+    for (const double depth : depths_) slabs.push_back(depth / length);
+    return slab_banding(signed_error(rendered.image, reference), slabs, reference.size, *options_.slab_window);
   }
 
   /// The mean of a pixel's channels.
@@ -400,6 +420,7 @@ class ViewStudy {
   Rendering truth_;
   Image truth_frame_;
   std::vector<Rendered> images_;
+  std::vector<double> depths_;  ///< of the surface, where stripes at slabs' borders are looked for
 };
 
 // --- Columns ---
@@ -514,6 +535,27 @@ Columns<Comparison> comparison_columns() {
   append_part(
       columns, [](const Comparison& found) -> const auto& { return found.shown; }, shown_columns());
   return columns;
+}
+
+Columns<SlabBanding> slab_banding_columns() {
+  return {
+      {.name = "slab_banding",
+       .description =
+           "share of the signed error's variance, mean of the channels, that follows the surface's place in its "
+           "slab: polynomials of degree 5 of it, after quadratics of the place in the window; 1: stripes, 0: none",
+       .cell = &SlabBanding::share},
+      {.name = "slab_banding_amplitude",
+       .unit = "of white",
+       .description = "root mean square of what follows it",
+       .cell = &SlabBanding::amplitude},
+      {.name = "slab_jump",
+       .unit = "of white",
+       .description = "root mean square of the error's change from the back of a slab to the front of the next",
+       .cell = &SlabBanding::jump},
+      {.name = "slab_windows",
+       .description = "windows in which this can be told: slabs two pixels to half a window wide",
+       .cell = &SlabBanding::windows},
+  };
 }
 
 Columns<CertifiedImage> certified_columns() {
@@ -644,6 +686,11 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& options
           written_here<Record>(banding_gain_over(options.baselines[i]),
                                of_banding([i](const BandingFound& banding) { return banding.gains[i]; })));
   }
+  if (options.slab_window)
+    append_part(
+        columns,
+        [](const Record& record) { return record.comparison ? record.comparison->slab_banding : std::nullopt; },
+        slab_banding_columns());
   append(
       columns,
       Columns<Record>{
@@ -683,7 +730,8 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 extern const Measure images_measure;
 const Measure images_measure{MeasureDefinition<Options, Record>{
     .name = "images",
-    .summary = "views of volumes in many ways, against each other and the true image: certified, or, where lit, estimated",
+    .summary =
+        "views of volumes in many ways, against each other and the true image: certified, or, where lit, estimated",
     .needs = {.transfers = true},
     .read = read_options,
     .columns = columns,

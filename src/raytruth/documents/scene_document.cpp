@@ -97,6 +97,19 @@ Camera read_camera(const JsonReader& json, const Grid& grid) {
   return camera;
 }
 
+/// The step of samples; none: at cells' borders and midpoints.
+std::optional<double> read_step(const JsonReader& json) {
+  const auto step = json.find("step");
+  if (const auto sampling = json.find("sampling")) {
+    const bool is_cells = sampling->word({"constant", "cells"}) == "cells";
+    if (is_cells && step) step->refuse("a step with the sampling cells", "no step, or the sampling constant");
+    if (!is_cells && !step)
+      sampling->refuse("the sampling constant without a step", "one with it, or the sampling cells");
+  }
+  if (!step) return {};
+  return step->positive_number();
+}
+
 SceneTable read_table(const JsonReader& json, const std::string& scheme) {
   if (scheme != "order1" && scheme != "order2")
     json.refuse(fmt::format("a table with the scheme {}", scheme), "one with the scheme order1 or order2");
@@ -180,14 +193,19 @@ SceneShading read_shading(const JsonReader& json) {
   if (!(norm > 0) || !std::isfinite(norm)) json.at("light").refuse_value("a direction");
   shading.lighting.light = light / norm;
   if (const auto gooch = json.find("gooch")) {
-    json.only({"method", "light", "gooch", "normal"});
+    json.only({"method", "light", "gooch", "normal", "gradient", "virtual_normals"});
     shading.gooch = read_gooch(*gooch);
   } else {
-    json.only({"method", "light", "ambient", "diffuse", "specular", "shininess", "highlight", "negative", "normal"});
+    json.only({"method", "light", "ambient", "diffuse", "specular", "shininess", "highlight", "negative", "normal",
+               "gradient", "virtual_normals"});
     read_lighting(json, shading.lighting);
   }
   if (const auto normal = json.find("normal"))
     shading.is_along_gradient = normal->word({"minus_gradient", "gradient"}) == "gradient";
+  if (const auto gradient = json.find("gradient"))
+    shading.gradient = read_word<GradientKind>(*gradient, gradient_kind_names);
+  if (const auto normals = json.find("virtual_normals"))
+    shading.virtual_normals = read_word<VirtualNormals>(*normals, virtual_normals_names);
   return shading;
 }
 
@@ -202,15 +220,15 @@ std::string read_scheme(const JsonReader& json) {
 SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   check_form(json, "scene/1");
   json.only({"raytruth", "volume", "repair", "nan", "time_step", "spacing", "border", "reconstruction",
-             "transfer_function", "emission", "camera", "scheme", "step", "shading", "table", "early_termination",
-             "empty_space"});
+             "transfer_function", "emission", "camera", "scheme", "sampling", "step", "shading", "table",
+             "early_termination", "empty_space"});
   const std::string scheme = read_scheme(json.at("scheme"));
   SceneFile result{.scene = {.transfer = PiecewiseLinear(std::vector<TransferPoint>(1)), .scheme = scheme}};
   Scene& scene = result.scene;
   if (const auto kind = json.find("reconstruction")) scene.field = read_word<FieldKind>(*kind, field_kind_names);
   scene.border = read_border(json);
   scene.emission = read_emission(json);
-  if (const auto step = json.find("step")) scene.step = step->positive_number();
+  scene.step = read_step(json);
   if (const auto table = json.find("table")) scene.table = read_table(*table, scheme);
   if (const auto shading = json.find("shading")) scene.shading = read_shading(*shading);
   if (const auto opaque = json.find("early_termination")) scene.opaque = opaque->number(0, 1);

@@ -6,6 +6,7 @@
 #include "raytruth/shading/slab_shading.hpp"
 #include "raytruth/signals/border.hpp"
 #include "raytruth/signals/field_kind.hpp"
+#include "raytruth/signals/point_gradient.hpp"
 #include "raytruth/skipping/occupied_blocks.hpp"
 #include "raytruth/tables/look_up.hpp"
 #include "raytruth/transfer/emission.hpp"
@@ -43,6 +44,13 @@ struct EmptySpace {
   BlockBounds bounds = BlockBounds::corrected;
 };
 
+/// How virtual samples have normals: their own gradient's, or that of a curve through the gradients, or through the
+/// normals, of the true samples around them (Lee 2010, section 3.1). A curve's vector is normalised.
+enum class VirtualNormals { own, catmull_rom, catmull_rom_unit, linear, linear_unit };
+
+inline constexpr std::array<std::string_view, 5> virtual_normals_names{"own", "catmull_rom", "catmull_rom_unit",
+                                                                       "linear", "linear_unit"};
+
 /// How a scene is lit.
 struct SceneShading {
   const Shading* method = nullptr;  ///< of catalogue::shadings(): the light inside a slab from the normals at its ends;
@@ -50,6 +58,8 @@ struct SceneShading {
   Lighting lighting = {};  ///< `light` points to the light, in world coordinates; `half` is made for every pixel
   std::optional<Gooch> gooch = {};  ///< instead of ambient, diffuse and specular light
   bool is_along_gradient = false;   ///< whether normals are +grad s / |grad s|, not -grad s / |grad s|
+  GradientKind gradient = GradientKind::voxels;
+  VirtualNormals virtual_normals = VirtualNormals::own;  ///< of schemes that look virtual samples up
 };
 
 /// An image to be made. Lengths are in smallest spacings of the grid: extinctions are per such a length, steps so long.

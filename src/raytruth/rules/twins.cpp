@@ -245,6 +245,9 @@ std::vector<Twin> make_twins() {
           "virtual_catmull_rom_ghost", [](auto r) { return &decltype(r)::virtual_catmull_rom_ghost; }, three, sum),
       sum_twin(
           "virtual_sample", [](auto r) { return &decltype(r)::virtual_sample; }, {signals, unit}, sum),
+      sum_twin(
+          "virtual_texel", [](auto r) { return &decltype(r)::virtual_texel; },
+          {signals, signals, signals, signals, unit}, sum),
       twin(
           "absorption", [](auto r) { return &decltype(r)::absorption; }, {depth, is_linear}, absorbing),
       twin(

@@ -10,3 +10,15 @@ real virtual_sample(vec4 curve, real u) {
   real cubic = (curve[3] - curve[0]) - linear - quadratic;
   return curve[0] + u * (linear + u * (quadratic + u * cubic));
 }
+
+// Four channels at once, the intensity and the gradient of samples as texels hold them: the cubic of
+// virtual_catmull_rom.glsl through the middle two of four equally spaced samples, channel by channel, at u (Lee 2010,
+// eq. 2). A normal is the gradient over its length. Exact for constants, bit by bit, and at u = 0.
+vec4 virtual_texel(vec4 before, vec4 front, vec4 back, vec4 after, real u) {
+  real middle = 0.5;
+  vec4 rise = back - front;
+  vec4 at_front = middle * (back - before);
+  vec4 cubic = (at_front - rise) + (middle * (after - front) - rise);
+  vec4 quadratic = (rise - at_front) - cubic;
+  return front + u * (at_front + u * (quadratic + u * cubic));
+}

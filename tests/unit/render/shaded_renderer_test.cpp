@@ -83,7 +83,7 @@ TEST(ShadedRenderer, ReferenceIsWithinItsRadiusOfCertifiedCells) {
       EXPECT_EQ(rendering.not_converged, 0);
       for (std::int64_t pixel = 0; pixel < 6; ++pixel) {
         const PixelRay ray = view(pixel % 3, pixel / 3);
-        const LitView lit(scene.grid, scene.border, *scene.shading, ray);
+        const LitView lit(PointGradient(scene.grid), scene.border, *scene.shading, ray);
         const Chain<3> chain = chain_of(scene, ray);
         Eigen::Array4d truth = Eigen::Array4d::Zero();
         double radius = 0;
@@ -116,7 +116,7 @@ TEST(ShadedRenderer, ReferenceIsTheLimitOfPlainSums) {
   const GradientFilter& filter = catalogue::gradient_filters().front();
   for (const std::int64_t pixel : {8, 17, 25}) {
     const PixelRay ray = view(pixel % 7, pixel / 7);
-    const LitView lit(scene.grid, scene.border, *scene.shading, ray);
+    const LitView lit(PointGradient(scene.grid), scene.border, *scene.shading, ray);
     const Illumination illumination(lit.lighting());
     const Chain<3> chain = chain_of(scene, ray);
     const double entry =
@@ -214,6 +214,67 @@ TEST(ShadedRenderer, GoochIsLinearInTheCosine) {
         0.5 * plain.pixels[i].head<3>() + plain.pixels[i][3] * Vector3<double>(0.1, 0.2, 0.3);
     EXPECT_LT((lit.pixels[i].head<3>() - expected).abs().maxCoeff(), 1e-8);
   }
+}
+
+/// Samples with virtual ones between, whose normals are made in this way.
+Scene virtual_scene(VirtualNormals normals, double step) {
+  Scene scene = scene_of("sampled_virtual_catmull_rom_3",
+                         {.lighting = lighting_with("lobe", Negative::clamp), .virtual_normals = normals});
+  scene.step = step;
+  return scene;
+}
+
+TEST(ShadedRenderer, CurvesThroughGradientsAreTheirOwnWhereThoseAreLinear) {
+  // A quadratic has linear gradients, central differences too, but for the voxels at the border, where it is clear.
+  const auto quadratic = [](VirtualNormals normals) {
+    Scene scene = virtual_scene(normals, 0.7);
+    scene.grid = {.size = {12, 12, 12}, .spacing = {1, 1.5, 1.25}, .values = {}};
+    for (int k = 0; k < 12; ++k)
+      for (int j = 0; j < 12; ++j)
+        for (int i = 0; i < 12; ++i)
+          scene.grid.values.push_back(1 - (std::pow(i - 5.4, 2) + std::pow(j - 5.6, 2) + std::pow(k - 5.7, 2)) / 40);
+    scene.camera.target = {5.5, 8.25, 6.875};
+    return image_of(scene);
+  };
+  const Image own = quadratic(VirtualNormals::own);
+  EXPECT_GT(own.pixels[17][3], 0.5);
+  EXPECT_LT(largest_difference(quadratic(VirtualNormals::catmull_rom), own), 1e-12);
+  EXPECT_LT(largest_difference(quadratic(VirtualNormals::linear), own), 1e-12);
+  // Unit normals turn on circles: their lines and cubics are others, the cubic a closer one.
+  const double cubic = largest_difference(quadratic(VirtualNormals::catmull_rom_unit), own);
+  const double linear = largest_difference(quadratic(VirtualNormals::linear_unit), own);
+  EXPECT_GT(cubic, 1e-6);
+  EXPECT_GT(linear, 1.5 * cubic);
+}
+
+TEST(ShadedRenderer, CurvesThroughGradientsTendToTheirOwn) {
+  for (const VirtualNormals normals : {VirtualNormals::catmull_rom, VirtualNormals::catmull_rom_unit,
+                                       VirtualNormals::linear, VirtualNormals::linear_unit}) {
+    const auto error = [normals](double step) {
+      return largest_difference(image_of(virtual_scene(normals, step)),
+                                image_of(virtual_scene(VirtualNormals::own, step)));
+    };
+    const double coarse = error(0.4);
+    EXPECT_GT(coarse, 1e-5);
+    // Second order in the kinks at cells' borders, which take a share of all intervals that falls with the step.
+    EXPECT_LT(error(0.1), coarse / 4);
+  }
+}
+
+TEST(ShadedRenderer, GradientsOfTheReconstructionAreRefusedWhereEveryPointHasOne) {
+  for (const std::string scheme : {"reference", "cell_cubic", "order1", "riemann_mid"}) {
+    Scene scene =
+        scene_of(scheme, {.lighting = lighting_with("lobe", Negative::clamp), .gradient = GradientKind::differences});
+    scene.step = 0.5;
+    if (scheme == "riemann_mid")
+      EXPECT_NO_THROW(Renderer{scene});
+    else
+      EXPECT_THROW(Renderer{scene}, InputError) << scheme;
+  }
+  Scene scene = virtual_scene(VirtualNormals::catmull_rom, 0.5);
+  EXPECT_NO_THROW(Renderer{scene});
+  scene.scheme = "riemann_mid";
+  EXPECT_THROW(Renderer{scene}, InputError);
 }
 
 TEST(ShadedRenderer, WhatItRefuses) {

@@ -222,6 +222,24 @@ TEST(EveryScheme, TellsBinary32FromBinary64ByRounding) {
   }
 }
 
+TEST(VirtualTexel, IsTheVirtualSampleOfEveryChannel) {
+  Rules<double> rules;
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    std::array<Rules<double>::vec4, 4> texels;
+    for (std::size_t k = 0; k < 4; ++k)
+      for (Eigen::Index channel = 0; channel < 4; ++channel)
+        texels[k][channel] = random_numbers(2, RandomStream::points, 4 * i + k)[static_cast<std::size_t>(channel)];
+    const double u = random_numbers(3, RandomStream::points, i)[0];
+    const auto [before, front, back, after] = texels;
+    const auto found = rules.virtual_texel(before, front, back, after, u);
+    for (Eigen::Index c = 0; c < 4; ++c)
+      EXPECT_NEAR(found[c], rules.virtual_sample(rules.virtual_catmull_rom(before[c], front[c], back[c], after[c]), u),
+                  8 * 0x1p-53);
+    EXPECT_TRUE((rules.virtual_texel(before, front, back, after, 0) == front).all());
+    EXPECT_TRUE((rules.virtual_texel(front, front, front, front, u) == front).all());
+  }
+}
+
 TEST(Samples, ConstantStepsEndAtTheRaysEnd) {
   Chain<3> signal;
   signal.pieces.push_back({0.0, 1.1, {{0, 1, 2, 3}}});

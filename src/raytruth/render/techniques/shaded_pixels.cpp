@@ -14,10 +14,11 @@ PixelRendererFactory prepare_scheme(const PreparedScene& prepared) {
   const Scene& scene = prepared.scene;
   return std::visit(
       [&]<class Field>(const Field& field) -> PixelRendererFactory {
-        return [&field, &scene, blocks = asked_blocks(scene, field)]() -> PixelRenderer {
+        return [&field, &scene, gradient = gradient_of(scene, field),
+                blocks = asked_blocks(scene, field)]() -> PixelRenderer {
           return [&field, &scene, blocks, parts_of = PartsOfRay(field.grid().size, field.border(), blocks.get()),
                   chain = Chain<Field::degree>(), samples = Samples<double>(),
-                  shaded = ShadedRay<Field::degree>(scene)](const PixelRay& pixel) mutable -> PixelLight {
+                  shaded = ShadedRay<Field::degree>(scene, gradient)](const PixelRay& pixel) mutable -> PixelLight {
             const auto parts = parts_of(pixel.ray, pixel.length_unit);
             if (parts && parts->empty()) return {};
             field.trace(pixel.ray, chain);
@@ -37,10 +38,10 @@ PixelRendererFactory prepare_reference(const PreparedScene& prepared) {
       [&]<class Field>(const Field& field) -> PixelRendererFactory {
         const auto blocks = std::make_shared<const OccupiedBlocks>(
             certain_blocks(field, ClearScalars(scene.transfer, scene.emission), prepared.placing_error));
-        return [&field, &scene, blocks]() -> PixelRenderer {
+        return [&field, &scene, gradient = gradient_of(scene, field), blocks]() -> PixelRenderer {
           return [&field, blocks, parts_of = PartsOfRay(field.grid().size, field.border(), blocks.get()),
                   chain = Chain<Field::degree>(),
-                  shaded = ShadedRay<Field::degree>(scene)](const PixelRay& pixel) mutable -> PixelLight {
+                  shaded = ShadedRay<Field::degree>(scene, gradient)](const PixelRay& pixel) mutable -> PixelLight {
             if (parts_of(pixel.ray)->empty()) return {};
             field.trace(pixel.ray, chain);
             scale_lengths(chain, pixel.length_unit);

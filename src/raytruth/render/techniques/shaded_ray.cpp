@@ -3,6 +3,7 @@
 #include "raytruth/core/bernstein_product.hpp"
 #include "raytruth/core/named.hpp"
 #include "raytruth/reference/certified.hpp"
+#include "raytruth/rules/rules.hpp"
 #include "raytruth/schemes/integral_schemes.hpp"
 #include "raytruth/schemes/sampled_march.hpp"
 #include "raytruth/schemes/scheme_list.hpp"
@@ -16,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <type_traits>
 #include <variant>
 
@@ -76,6 +78,69 @@ std::vector<double> breaks_of(const std::array<Bernstein<3>, 3>& normals, const 
   return breaks;
 }
 
+/// A unit vector, or zero where the vector is.
+Vector3<double> normalized(const Vector3<double>& vector) {
+  const double norm = vector.matrix().norm();
+  return norm == 0 ? vector : Vector3<double>(vector / norm);
+}
+
+/// Normals at virtual samples from the gradients at the true ones, which are fetched when they are first needed.
+class NormalsBetweenSamples {
+ public:
+  NormalsBetweenSamples(const LitView& view, const Samples<double>& samples, VirtualNormals kind)
+      : view_(view),
+        samples_(samples),
+        is_cubic_(kind == VirtualNormals::catmull_rom || kind == VirtualNormals::catmull_rom_unit),
+        is_unit_(kind == VirtualNormals::catmull_rom_unit || kind == VirtualNormals::linear_unit),
+        full_(full_intervals(samples)),
+        fetched_(samples.positions.size()) {}
+
+  /// At a share u of the interval behind sample k: as VirtualCatmullRom makes scalars, linear where that is.
+  Vector3<double> operator()(std::size_t k, double u) {
+    const vec4 front = at(k);
+    const vec4 back = at(k + 1);
+    if (!is_cubic_ || k >= full_ || full_ < 2) return normal_of(front + u * (back - front));
+    const vec4 before = k > 0 ? at(k - 1) : ghost(at(0), at(1), at(2));
+    const vec4 after = k + 2 <= full_ ? at(k + 2) : ghost(at(full_), at(full_ - 1), at(full_ - 2));
+    return normal_of(rules_.virtual_texel(before, front, back, after, u));
+  }
+
+ private:
+  using vec4 = Rules<double>::vec4;
+
+  static Vector3<double> normal_of(const vec4& texel) { return normalized(texel.head<3>()); }
+
+  const vec4& at(std::size_t sample) {
+    auto& texel = fetched_[sample];
+    if (!texel) {
+      const auto t = static_cast<double>(samples_.positions[sample]);
+      texel.emplace(vec4::Zero());
+      texel->head<3>() = is_unit_ ? view_.normal_at(t) : view_.gradient_at(t);
+    }
+    return *texel;
+  }
+
+  vec4 ghost(const vec4& first, const vec4& second, const vec4& third) {
+    vec4 result;
+    for (Eigen::Index i = 0; i < 4; ++i) result[i] = rules_.virtual_catmull_rom_ghost(first[i], second[i], third[i]);
+    return result;
+  }
+
+  const LitView& view_;
+  const Samples<double>& samples_;
+  bool is_cubic_;
+  bool is_unit_;
+  std::size_t full_;
+  std::vector<std::optional<vec4>> fetched_;
+  Rules<double> rules_;
+};
+
+/// Whether a scheme looks virtual samples up.
+bool has_virtual_samples(const IntegralScheme* scheme) {
+  const auto* const sampled = scheme == nullptr ? nullptr : std::get_if<Sampled>(&scheme->method);
+  return sampled != nullptr && sampled->rule == SampledRule::virtual_catmull_rom;
+}
+
 /// Samples that a scheme looks up can be lit; so can a signal that is integrated exactly.
 bool can_be_lit(const IntegralScheme& scheme) {
   return std::holds_alternative<Sampled>(scheme.method) || std::holds_alternative<Ideal>(scheme.method) ||
@@ -84,12 +149,12 @@ bool can_be_lit(const IntegralScheme& scheme) {
 
 }  // namespace
 
-LitView::LitView(const Grid& grid, Border border, const SceneShading& shading, const PixelRay& pixel)
-    : grid_(grid),
+LitView::LitView(const PointGradient& gradient, Border border, const SceneShading& shading, const PixelRay& pixel)
+    : gradient_(gradient),
       pixel_(pixel),
       sign_(shading.is_along_gradient ? 1 : -1),
-      entry_(static_cast<double>(clip(grid.size, border, pixel.ray.origin, pixel.ray.direction).begin)) {
-  const Vector3<double> forward = in_world(pixel.ray.direction, grid.spacing);
+      entry_(static_cast<double>(clip(gradient.voxels().size, border, pixel.ray.origin, pixel.ray.direction).begin)) {
+  const Vector3<double> forward = in_world(pixel.ray.direction, gradient.voxels().spacing);
   lighting_ = lighting_of(shading, -forward / forward.matrix().norm());
 }
 
@@ -100,37 +165,14 @@ std::array<double, 3> LitView::position(double t) const {
   return result;
 }
 
-std::array<std::int64_t, 3> LitView::cell_at(double t) const {
-  const auto place = position(t);
-  std::array<std::int64_t, 3> cell{};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    cell[axis] = std::clamp(static_cast<std::int64_t>(std::floor(place[axis])), std::int64_t{-1}, grid_.size[axis] - 1);
-  return cell;
-}
+Vector3<double> LitView::gradient_at(double t) const { return sign_ * gradient_(position(t)); }
 
-namespace {
-
-/// The position in the cell's own coordinates.
-std::array<double, 3> local(const std::array<double, 3>& position, const std::array<std::int64_t, 3>& cell) {
-  std::array<double, 3> result{};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    result[axis] = std::clamp(position[axis] - static_cast<double>(cell[axis]), 0.0, 1.0);
-  return result;
-}
-
-}  // namespace
-
-Vector3<double> LitView::normal_at(double t) const {
-  const auto cell = cell_at(t);
-  Vector3<double> gradient = CellGradient(grid_, cell).at(local(position(t), cell));
-  const double norm = gradient.matrix().norm();
-  if (norm == 0) return gradient;
-  return sign_ * gradient / norm;
-}
+Vector3<double> LitView::normal_at(double t) const { return normalized(gradient_at(t)); }
 
 std::array<Bernstein<3>, 3> LitView::normals_along(double begin, double end) const {
-  const auto cell = cell_at(begin + (end - begin) / 2);
-  auto normals = CellGradient(grid_, cell).along(local(position(begin), cell), local(position(end), cell));
+  const Grid& grid = gradient_.voxels();
+  const auto cell = cell_of(grid, position(begin + (end - begin) / 2));
+  auto normals = CellGradient(grid, cell).along(in_cell(position(begin), cell), in_cell(position(end), cell));
   for (auto& normal : normals)
     for (double& b : normal.coefficients) b *= sign_;
   return normals;
@@ -157,6 +199,19 @@ void refuse_unlit(const Scene& scene) {
         "scheme {} with shading; reference, cell_cubic, and sampled and ideal schemes are allowed", scene.scheme));
   if (scene.field != FieldKind::trilinear && !is_reference && std::holds_alternative<CellCubic>(scheme->method))
     throw InputError("scheme cell_cubic: a trilinear ray, a cubic in each cell, is needed");
+  const SceneShading& shading = *scene.shading;
+  if (shading.virtual_normals != VirtualNormals::own && !has_virtual_samples(scheme))
+    throw InputError(
+        fmt::format("virtual normals {} with the scheme {}; schemes that look virtual samples up, as "
+                    "sampled_virtual_catmull_rom_3, are allowed",
+                    virtual_normals_names[static_cast<std::size_t>(shading.virtual_normals)], scene.scheme));
+  const bool lights_samples =
+      method != nullptr || (scheme != nullptr && std::holds_alternative<Sampled>(scheme->method));
+  if (shading.gradient != GradientKind::voxels && !lights_samples)
+    throw InputError(
+        fmt::format("gradient {} with the scheme {} and the normal of every point, which needs the gradient voxels; "
+                    "sampled schemes, and methods of shading, are allowed",
+                    gradient_kind_names[static_cast<std::size_t>(shading.gradient)], scene.scheme));
   if (method == nullptr) return;
   if (is_reference || std::holds_alternative<Sampled>(scheme->method))
     throw InputError(
@@ -170,8 +225,9 @@ void refuse_unlit(const Scene& scene) {
 }
 
 template <int Degree>
-ShadedRay<Degree>::ShadedRay(const Scene& scene)
+ShadedRay<Degree>::ShadedRay(const Scene& scene, const PointGradient& gradient)
     : scene_(scene),
+      gradient_(gradient),
       scheme_(find_named(catalogue::integral_schemes(), scene.scheme)),
       clear_(scene.transfer, scene.emission),
       look_up_(scene.transfer, scene.emission),
@@ -301,10 +357,21 @@ PixelLight ShadedRay<Degree>::march_samples(const LitView& view, const Sampled& 
   const Lighting& lighting = view.lighting();
   const Illumination illumination(lighting);
   const LightModel model(lighting, scene_.shading->gooch, SpecularDensity::white);
+  const bool has_curves = scene_.shading->virtual_normals != VirtualNormals::own;
+  NormalsBetweenSamples between(view, samples, scene_.shading->virtual_normals);
+  std::size_t interval = 0;
+  const auto normal_at = [&](double t) {
+    if (!has_curves) return view.normal_at(t);
+    const auto place = [&samples](std::size_t k) { return static_cast<double>(samples.positions[k]); };
+    while (interval + 2 < samples.positions.size() && t >= place(interval + 1)) ++interval;
+    return between(interval, (t - place(interval)) / (place(interval + 1) - place(interval)));
+  };
   const auto lit = [&](double value, double t) {
     Eigen::Array4d optics = look_up_(value);
     const double white = scene_.emission == Emission::associated ? optics[3] : 1;
-    const Vector3<double> normal = view.normal_at(t);
+    // What sends out nothing needs no normal.
+    if (white == 0 && (optics == 0).all()) return optics;
+    const Vector3<double> normal = normal_at(t);
     const auto cosine = [&normal](const Vector3<double>& direction) { return (normal * direction).sum(); };
     const PointLight light = (normal == 0).all() ? model.without_normal()
                                                  : model(illumination.diffuse(cosine(lighting.light)),
@@ -320,7 +387,7 @@ template <int Degree>
 PixelLight ShadedRay<Degree>::operator()(const PixelRay& pixel, const Chain<Degree>& signal,
                                          const Samples<double>& samples, const Omissions& omissions) {
   if (signal.pieces.empty()) return {};
-  const LitView view(scene_.grid, scene_.border, *scene_.shading, pixel);
+  const LitView view(gradient_, scene_.border, *scene_.shading, pixel);
   if (scheme_ == nullptr || std::holds_alternative<CellCubic>(scheme_->method))
     return integrate(view, signal, signal, samples, omissions, exact_);
   std::string_view refusal_of_samples;

@@ -9,6 +9,7 @@
 #include "raytruth/schemes/optics_lookup.hpp"
 #include "raytruth/schemes/samples.hpp"
 #include "raytruth/shading/lit_integral.hpp"
+#include "raytruth/signals/point_gradient.hpp"
 #include "raytruth/skipping/clear_scalars.hpp"
 
 #include <array>
@@ -26,11 +27,14 @@ struct SlabLight {
 /// A pixel's ray as its lighting sees it: where its points lie, their normals, and light and viewer.
 class LitView {
  public:
-  LitView(const Grid& grid, Border border, const SceneShading& shading, const PixelRay& pixel);
+  LitView(const PointGradient& gradient, Border border, const SceneShading& shading, const PixelRay& pixel);
 
   [[nodiscard]] const Lighting& lighting() const { return lighting_; }
 
-  /// A unit vector, or zero where the gradient is; t in smallest spacings behind the ray's entry.
+  /// The gradient, turned to where normals point; t in smallest spacings behind the ray's entry.
+  [[nodiscard]] Vector3<double> gradient_at(double t) const;
+
+  /// It over its length, or zero where the gradient is.
   [[nodiscard]] Vector3<double> normal_at(double t) const;
 
   /// The method's light from the normals at both ends of a slab: ambient light only where one of them is zero, or where
@@ -42,9 +46,8 @@ class LitView {
 
  private:
   [[nodiscard]] std::array<double, 3> position(double t) const;
-  [[nodiscard]] std::array<std::int64_t, 3> cell_at(double t) const;
 
-  const Grid& grid_;
+  PointGradient gradient_;
   const PixelRay& pixel_;
   double sign_;  ///< of the gradient in the normal
   double entry_;
@@ -54,15 +57,23 @@ class LitView {
 /// Throws InputError for schemes that cannot be lit, and for methods that they or the lighting cannot have.
 void refuse_unlit(const Scene& scene);
 
+/// The gradients that the scene's shading asks for; `field` is the scene's reconstruction.
+template <class Field>
+PointGradient gradient_of(const Scene& scene, const Field& field) {
+  return {scene.grid, field.grid(), field.kind(), scene.shading->gradient};
+}
+
 /// A lit ray by the scene's scheme. The normal at a point is the gradient there (central differences at the voxels,
-/// trilinearly interpolated, per world length), normalised; where it is zero only ambient light counts.
+/// trilinearly interpolated, unless the scene says otherwise; per world length), normalised; where it is zero only
+/// ambient light counts.
 ///
 /// `reference`, and every other scheme without a method of shading, has this normal at every point. With a method it is
 /// fetched at the samples only, and the light in between is the method's; a slab with a zero gradient at either end, or
 /// with antiparallel normals, has ambient light only.
 ///
 /// The signal is the exact one for `reference` and `cell_cubic`, what the scheme makes of its samples for ideal
-/// schemes; both are integrated by LitIntegral. Sampled schemes light the samples that they look up. The radius is that
+/// schemes; both are integrated by LitIntegral. Sampled schemes light the samples that they look up, virtual ones with
+/// the normals that the scene asks for. The radius is that
 /// integral's sum of differences: an estimate of the quadrature's error, not a bound.
 ///
 /// Holds buffers: one object per thread. Chains and samples have lengths in smallest spacings.
@@ -70,7 +81,7 @@ template <int Degree>
 class ShadedRay {
  public:
   /// The scene must be one that `refuse_unlit` does not refuse.
-  explicit ShadedRay(const Scene& scene);
+  ShadedRay(const Scene& scene, const PointGradient& gradient);
 
   PixelLight operator()(const PixelRay& pixel, const Chain<Degree>& signal, const Samples<double>& samples,
                         const Omissions& omissions);
@@ -100,6 +111,7 @@ class ShadedRay {
                            const Samples<double>& samples, const Omissions& omissions) const;
 
   const Scene& scene_;
+  PointGradient gradient_;
   const IntegralScheme* scheme_;  ///< null: reference
   ClearScalars clear_;
   OpticsLookup<double> look_up_;

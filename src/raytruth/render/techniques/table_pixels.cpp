@@ -119,8 +119,8 @@ template <class Field>
 PixelRenderer shaded_table_renderer(const Field& field, const Scene& scene,
                                     const std::shared_ptr<const ShadedTable>& table,
                                     const std::shared_ptr<const OccupiedBlocks>& blocks) {
-  const auto view_of = [&scene](const PixelRay& pixel) {
-    return LitView(scene.grid, scene.border, *scene.shading, pixel);
+  const auto view_of = [&scene, gradient = gradient_of(scene, field)](const PixelRay& pixel) {
+    return LitView(gradient, scene.border, *scene.shading, pixel);
   };
   const auto slab_of = [&scene, table, clear = ClearScalars(scene.transfer, scene.emission)](
                            const LitView& view, std::size_t first, std::size_t last, const Samples<double>& samples,
