@@ -21,8 +21,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t largest_seed = std::numeric_limits<std::int64_t>::max();
-constexpr std::int64_t most_rays = 100'000'000;
 constexpr std::int64_t most_plot_columns = 8;
+constexpr std::int64_t most_rays = 100'000'000;
 constexpr double largest_optical_depth = 1e6;
 
 /// The text at items[i][key], or items[i] itself for an empty key, of the list at document[list].
@@ -150,18 +150,27 @@ void check_range(const JsonReader& json) {
   if (!(ends[0].number() < ends[1].number())) ends[1].refuse_value(fmt::format("a number > {}", ends[0].number()));
 }
 
+/// [2, 3] is the second of three.
+void check_part(const JsonReader& json) {
+  const auto numbers = json.items(2);
+  if (numbers.size() != 2) json.refuse(fmt::format("{} items", numbers.size()), "a pair of numbers");
+  numbers[0].integer(1, numbers[1].integer(1, most_plot_columns));
+}
+
 void check_panel(const JsonReader& json, const RowNames& names) {
   const std::vector<std::string_view> columns(names.columns.begin(), names.columns.end());
   const std::string kind = json.at("kind").word({"quantiles", "points", "lines", "scatter", "image"});
   read_selector(json.at("rows"), names);
   if (kind == "image") {
-    json.only({"kind", "rows", "line", "pixels", "is_color", "label"});
+    json.only({"kind", "rows", "line", "pixels", "is_color", "turned", "label"});
     for (const char* const column : {"line", "pixels"}) json.at(column).word(columns);
     if (const auto is_color = json.find("is_color")) is_color->boolean();
+    if (const auto turned = json.find("turned")) turned->word({"left", "right"});
     json.at("label").text();
     return;
   }
   json.at("series").word(columns);
+  if (const auto title = json.find("title")) title->text();
   if (kind == "lines" || kind == "scatter") {
     for (const char* const column : {"x", "y"}) json.at(column).word(columns);
     for (const char* const label : {"label_x", "label_y"}) json.at(label).text();
@@ -171,38 +180,42 @@ void check_panel(const JsonReader& json, const RowNames& names) {
       if (const auto found = json.find(range)) check_range(*found);
   }
   if (kind == "scatter") {
-    json.only(
-        {"kind", "rows", "x", "y", "series", "label_x", "label_y", "log_x", "log_y", "x_range", "y_range", "diagonal"});
+    json.only({"kind", "rows", "title", "x", "y", "series", "label_x", "label_y", "log_x", "log_y", "x_range",
+               "y_range", "diagonal"});
     if (const auto diagonal = json.find("diagonal")) diagonal->boolean();
     return;
   }
   if (kind == "lines") {
-    json.only({"kind", "rows", "x", "y", "series", "front", "label_x", "label_y", "log_x", "log_y", "x_range",
+    json.only({"kind", "rows", "title", "x", "y", "series", "front", "label_x", "label_y", "log_x", "log_y", "x_range",
                "y_range", "floor"});
     if (const auto front = json.find("front")) front->word(columns);
     if (const auto floor = json.find("floor")) floor->number();
     return;
   }
   if (kind == "points") {
-    json.only({"kind", "rows", "value", "low", "high", "group", "series", "printed", "log", "label"});
+    json.only({"kind", "rows", "title", "value", "low", "high", "group", "part", "series", "printed", "log", "label"});
     json.at("value").word(columns);
     for (const char* const end : {"low", "high"})
       if (const auto column = json.find(end)) column->word(columns);
   } else {
-    json.only({"kind", "rows", "value", "group", "series", "printed", "log", "label"});
+    json.only({"kind", "rows", "title", "value", "group", "part", "series", "printed", "log", "label"});
     json.at("value").text();
   }
   json.at("group").word(columns);
+  if (const auto part = json.find("part")) check_part(*part);
   if (const auto printed = json.find("printed")) printed->word(columns);
   if (const auto log = json.find("log")) log->boolean();
   json.at("label").text();
 }
 
 void check_plot(const JsonReader& json, const RowNames& names) {
-  json.only({"title", "note", "columns", "panels"});
+  json.only({"title", "note", "columns", "image_columns", "names", "panels"});
   json.at("title").text();
   if (const auto note = json.find("note")) note->text();
-  if (const auto columns = json.find("columns")) columns->integer(1, most_plot_columns);
+  for (const char* const key : {"columns", "image_columns"})
+    if (const auto columns = json.find(key)) columns->integer(1, most_plot_columns);
+  if (const auto readable = json.find("names"))
+    for (const auto& [word, name] : readable->members()) name.text();
   for (const JsonReader& panel : json.at("panels").items()) check_panel(panel, names);
 }
 

@@ -100,11 +100,13 @@ TEST(NodeTable, IntegratesPolynomialsOfTwiceItsCount) {
     for (std::size_t j = 0; j <= 3; ++j) {
       double sum = 0;
       for (std::size_t i = 0; i < most_nodes; ++i) sum += table.weights[i] * table.signal_basis[j][i];
-      EXPECT_NEAR(sum, count >= 2 ? 1.0 / 4 : sum, 1e-15);
+      // One node is the middle, where the basis is C(3, j) / 8.
+      EXPECT_NEAR(sum, count >= 2 ? 1.0 / 4 : (j % 3 == 0 ? 1.0 : 3.0) / 8, 1e-15);
     }
-    for (const NodeRow& row : table.weighted_rate_basis) {
+    for (std::size_t j = 0; j <= 2; ++j) {
+      const NodeRow& row = table.weighted_rate_basis[j];
       const double sum = std::accumulate(row.begin(), row.end(), 0.0);
-      EXPECT_NEAR(sum, count >= 2 ? 1.0 / 3 : sum, 1e-15);
+      EXPECT_NEAR(sum, count >= 2 ? 1.0 / 3 : (j == 1 ? 2.0 : 1.0) / 4, 1e-15);
     }
     for (std::size_t i = 0; i < count; ++i) {
       double sum = 0;
@@ -236,6 +238,65 @@ TEST(PieceIntegral, ErrorsOfTheScalarAreCovered) {
   for (const Emission emission : {Emission::associated, Emission::plain}) {
     check_errors_of_the_scalar<3>(emission);
     check_errors_of_the_scalar<9>(emission);
+  }
+}
+
+/// 1/2 and as much of T_n(2u - 1), n the degree, as leaves the coefficients in [0, 1]: of T_n coefficient j is
+/// (-1)^(n-j) C(2n, 2j) / C(n, j). All of what varies in its depth has the highest frequencies that there are.
+template <int Degree>
+LinearPiece<Degree> swinging_piece(double depth) {
+  Bernstein<Degree> highest;
+  double coefficient = -1;  // of an odd degree
+  for (int j = 0; j <= Degree; ++j) {
+    highest.coefficients[static_cast<std::size_t>(j)] = coefficient;
+    coefficient *= -(2.0 * Degree - 2 * j - 1) / (2 * j + 1);
+  }
+  const double largest = *std::max_element(highest.coefficients.begin(), highest.coefficients.end());
+  LinearPiece<Degree> piece{.extinction_at_1 = 2 * depth, .length = 1};
+  for (std::size_t j = 0; j <= Degree; ++j) piece.x[j] = 0.5 + highest.coefficients[j] / (2 * largest);
+  return piece;
+}
+
+TEST(PieceIntegral, TheHighestFrequenciesOfTheDepthAreCovered) {
+  for (const Emission emission : {Emission::associated, Emission::plain})
+    for (const double depth : {0.1, 1.0, 8.0, 24.0}) {
+      const auto check = [&]<int Degree>(const LinearPiece<Degree>& piece) {
+        const auto exact = exact_integrals(piece, emission);
+        for (const auto& integral : {integrate(piece, emission), integrate_scalar(piece, emission)})
+          expect_enclosed<Degree>(integral, exact, 3e-14);
+      };
+      check(swinging_piece<3>(depth));
+      check(swinging_piece<9>(depth));
+    }
+}
+
+// tau = depth (1 - x) from where x is 1: what is seen of it hangs on the last digits of x, which halving rounds.
+TEST(PieceIntegral, HalvingAddsToTheErrorOfTheScalar) {
+  constexpr double depth = 0x1p19;  // 14 halvings
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    LinearPiece<9> piece{.extinction_at_0 = depth, .length = 1};
+    Bernstein<9, Real50> clear;
+    for (std::size_t j = 0; j <= 9; ++j) {
+      piece.x[j] = j == 0 ? 1 : 1 - uniform(50 + j, i);
+      clear.coefficients[j] = 1 - Real50(piece.x[j]);
+    }
+    const auto depth_up_to = clear.antiderivative();
+    Real50 end = 1;
+    while (depth * depth_up_to.value(end) > 200) end /= 2;
+    Real50 exact = 0;  // of (1 - x) tau T
+    constexpr int parts = 16;
+    for (int part = 0; part < parts; ++part)
+      exact += boost::math::quadrature::gauss<Real50, 25>::integrate(
+          [&](const Real50& u) {
+            const Real50 here = clear.value(u);
+            return Real50(depth * here * here * exp(Real50(-depth * depth_up_to.value(u))));
+          },
+          Real50(end * part / parts), Real50(end * (part + 1) / parts));
+    for (const auto& integral :
+         {integrate(piece, Emission::associated), integrate_scalar(piece, Emission::associated)}) {
+      EXPECT_LE(to_double(abs(Real50(integral.weight_0 - exact))), integral.weight_error) << i;
+      EXPECT_LE(integral.weight_error, 1e-10) << i;
+    }
   }
 }
 

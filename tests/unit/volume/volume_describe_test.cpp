@@ -70,6 +70,19 @@ TEST(VolumeDescribe, ConstantLayersFromEachFace) {
   EXPECT_EQ(description.constant_layers[0], (std::array<std::int64_t, 2>{2, 2}));
   EXPECT_EQ(description.constant_layers[1], (std::array<std::int64_t, 2>{1, 3}));
   EXPECT_EQ(description.constant_layers[2], (std::array<std::int64_t, 2>{2, 1}));
+  // Layers each of a value of its own, from either face.
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::int64_t k = 0; k < 4; ++k)
+      for (std::int64_t j = 0; j < 5; ++j)
+        for (std::int64_t i = 0; i < 6; ++i) {
+          const std::int64_t layer = std::array{i, j, k}[axis];
+          const bool is_mixed = layer == 1 && (i + j + k) % 2 == 0;
+          grid.values[grid.index(i, j, k)] = static_cast<double>(is_mixed ? 100 : layer);
+        }
+    const auto of_layers = describe_volume(volume_of(grid.size, grid.values)).constant_layers;
+    EXPECT_EQ(of_layers[axis], (std::array<std::int64_t, 2>{1, grid.size[axis] - 2}));
+    EXPECT_EQ(of_layers[(axis + 1) % 3], (std::array<std::int64_t, 2>{0, 0}));
+  }
   const auto constant = describe_volume(volume_of({3, 2, 1}, std::vector<double>(6, 1)));
   EXPECT_EQ(constant.constant_layers[0], (std::array<std::int64_t, 2>{3, 3}));
   EXPECT_EQ(constant.constant_layers[2], (std::array<std::int64_t, 2>{1, 1}));
