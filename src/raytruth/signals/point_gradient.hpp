@@ -25,7 +25,7 @@ inline constexpr std::array<std::string_view, 3> gradient_kind_names{"voxels", "
 /// Refers to the grids, which must outlive it.
 class PointGradient {
  public:
-  /// Of kind `voxels`.
+  /// A gradient of kind `voxels`.
   explicit PointGradient(const Grid& voxels)
       : PointGradient(voxels, voxels, FieldKind::trilinear, GradientKind::voxels) {}
 

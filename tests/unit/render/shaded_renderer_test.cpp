@@ -225,14 +225,14 @@ Scene virtual_scene(VirtualNormals normals, double step) {
 }
 
 TEST(ShadedRenderer, CurvesThroughGradientsAreTheirOwnWhereThoseAreLinear) {
-  // A quadratic has linear gradients, central differences too, but for the voxels at the border, where it is clear.
+  // A quadratic has linear gradients, central differences too, but at the border, far from where it is seen.
   const auto quadratic = [](VirtualNormals normals) {
     Scene scene = virtual_scene(normals, 0.7);
     scene.grid = {.size = {12, 12, 12}, .spacing = {1, 1.5, 1.25}, .values = {}};
     for (int k = 0; k < 12; ++k)
       for (int j = 0; j < 12; ++j)
         for (int i = 0; i < 12; ++i)
-          scene.grid.values.push_back(1 - (std::pow(i - 5.4, 2) + std::pow(j - 5.6, 2) + std::pow(k - 5.7, 2)) / 40);
+          scene.grid.values.push_back(1 - (std::pow(i - 5.4, 2) + std::pow(j - 5.6, 2) + std::pow(k - 5.7, 2)) / 12);
     scene.camera.target = {5.5, 8.25, 6.875};
     return image_of(scene);
   };
