@@ -102,11 +102,14 @@ def distinct(rows, key):
     return list(dict.fromkeys(row[key] for row in rows if row.get(key) is not None))
 
 
-def words(result, value):
-    """A value as it is read: by the plot's "names", or with spaces."""
+def words(value):
+    return value.replace("_", " ") if isinstance(value, str) else f"{value:g}"
+
+
+def name_of(result, value):
+    """What is written for a value: what the plot's "names" say, or its words."""
     text = value if isinstance(value, str) else f"{value:g}"
-    names = result["experiment"]["plot"].get("names", {})
-    return names.get(text, text.replace("_", " ") if isinstance(value, str) else text)
+    return result["experiment"]["plot"].get("names", {}).get(text, words(value))
 
 
 def radius_of(result, row, column):
@@ -210,7 +213,7 @@ def draw_groups(axes, result, panel, columns, draw_bars, key_width):
             if is_filled(row):
                 draw_bars(values, place, style["color"])
             draw_marker(axes, values[len(values) // 2], place, style, is_filled(row))
-        label = words(result, name)
+        label = name_of(result, name)
         with_printed = [row for row in own if row.get(panel.get("printed")) is not None]
         printed = {groups.index(row[panel["group"]]): row[panel["printed"]] for row in with_printed}
         dashed = {"color": style["color"], "linestyle": (0, (4, 2)), "linewidth": 0.9, "zorder": 0}
@@ -226,7 +229,7 @@ def draw_groups(axes, result, panel, columns, draw_bars, key_width):
 
     if panel.get("log"):
         axes.set_xscale("log")
-    axes.set_yticks(range(len(groups)), [words(result, group) for group in groups])
+    axes.set_yticks(range(len(groups)), [name_of(result, group) for group in groups])
     axes.set_ylim(len(groups) - 0.5, -0.5)
     for border in range(1, len(groups)):
         axes.axhline(border - 0.5, color="0.9", linewidth=0.6, zorder=0)
@@ -325,7 +328,7 @@ def draw_lines(axes, result, panel):
         for row, (point, value) in zip(own, shown):
             if value <= floor or 0 < abs(value) <= MEANINGFUL_RADII * radius_of(result, row, y):
                 draw_marker(axes, point, value, style, filled=False, size=own_look["markersize"] + 0.5)
-        handles.append(Line2D([], [], **line, linewidth=1.1, markersize=3.5, label=words(result, name)))
+        handles.append(Line2D([], [], **line, linewidth=1.1, markersize=3.5, label=name_of(result, name)))
     finish_plane(axes, panel)
     return Panel(height_of_plane, legend=handles)
 
@@ -340,7 +343,7 @@ def draw_scatter(axes, result, panel):
         marks = {"color": style["color"], "linestyle": "none", "marker": style["marker"], "markersize": 3.5}
         marks |= {"markeredgecolor": "black", "markeredgewidth": 0.3}
         axes.plot([row[x] for row in own], [row[y] for row in own], alpha=0.75, **marks)
-        handles.append(Line2D([], [], **marks, label=words(result, name)))
+        handles.append(Line2D([], [], **marks, label=name_of(result, name)))
     finish_plane(axes, panel)
     if panel.get("diagonal"):
         ends = [min(axes.get_xlim()[0], axes.get_ylim()[0]), max(axes.get_xlim()[1], axes.get_ylim()[1])]
@@ -397,10 +400,7 @@ def why_without_data(result, panel):
     absent = [row for row in refused if all(could_match(row, key, wanted) for key, wanted in panel["rows"].items())]
     reasons = list(dict.fromkeys(f"{row.get('field') or row['measure']}: {row.get('why')}" for row in absent))
 
-    def asked_for(wanted):
-        return words(result, wanted) if isinstance(wanted, (str, float, int)) else wanted
-
-    wanted = ", ".join(f"{key} {asked_for(value)}" for key, value in panel["rows"].items())
+    wanted = ", ".join(f"{key} {words(value) if isinstance(value, (str, float, int)) else value}" for key, value in panel["rows"].items())
     return "\n".join(reasons) if reasons else f"no row with {wanted} has what this shows"
 
 

@@ -93,6 +93,9 @@ TEST(SecondOrder, NyquistAsksForTwiceTheSteepestSlope) {
   EXPECT_EQ(nyquist_iterations(axes, {0.5, 0.5, 0.5}), 8);
   EXPECT_EQ(nyquist_iterations(axes, {0, 0.5, 1}), 510);
   EXPECT_EQ(nyquist_iterations(axes, {0, 1, 0}), 2040);  // errata: up to 2040, not 256
+  // Steepest at the end, P' = 4 t - 1, and at the beginning, P' = 4 t - 3.
+  EXPECT_EQ(nyquist_iterations(axes, {0, 0, 1}), 1530);
+  EXPECT_EQ(nyquist_iterations(axes, {1, 0, 0}), 1530);
 }
 
 TEST(SecondOrder, AFullTableIsTheSlabs) {

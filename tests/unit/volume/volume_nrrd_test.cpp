@@ -475,6 +475,8 @@ TEST_F(VolumeNrrd, RefusesDataOfAnotherLengthThanAnnounced) {
   refused(NrrdFields{}.header(), "the header ends without an empty line");
   refused(NrrdFields{.encoding = "gzip"}.attached(gzip(eleven)),
           "the data end after 11 bytes; the header announces 12");
+  refused(NrrdFields{.type = "short", .sizes = "2 3 1", .encoding = "gzip"}.attached(gzip(eleven)),
+          "the data end after 11 bytes; the header announces 12");
   refused(NrrdFields{.encoding = "ascii"}.attached("1 2 3 4 5 6 7 8 9 10 11   "), "the data end after 11 numbers");
   refused(NrrdFields{.type = "short", .sizes = "2 3 1"}.attached(eleven), "no more than 11 bytes of data");
   refused(NrrdFields{.more = "byte skip: 1\n"}.attached(twelve_bytes), "no more than 11 bytes of data");
@@ -486,6 +488,31 @@ TEST_F(VolumeNrrd, RefusesDataOfAnotherLengthThanAnnounced) {
           "has 11 bytes of data; the header announces 12");
   refused(NrrdFields{.encoding = "ascii", .more = "byte skip: -1\n"}.attached("1"), "\"byte skip\" is -1");
   refused(NrrdFields{.more = "line skip: 4000000000\n"}.attached(twelve_bytes), "lines too early");
+}
+
+/// What is read in several goes, for there are more than 65536 voxels, is whole, and ends where it should.
+TEST_F(VolumeNrrd, MoreVoxelsThanAreReadAtOnce) {
+  constexpr std::size_t count = 3 * 43691;  // 2^17 + 1
+  std::string data;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto value = static_cast<std::uint16_t>(i % 65521);
+    data += static_cast<char>(value & 0xffU);
+    data += static_cast<char>(value >> 8U);
+  }
+  for (const char* const encoding : {"raw", "gzip"}) {
+    const NrrdFields fields{.type = "ushort", .sizes = "43691 3 1", .encoding = encoding};
+    const bool is_raw = fields.encoding == "raw";
+    const auto volume = read(fields.attached(is_raw ? data : gzip(data)));
+    ASSERT_EQ(volume.grid.values.size(), count);
+    for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(volume.grid.values[i], static_cast<double>(i % 65521)) << i;
+    EXPECT_EQ(volume.warnings.size(), 0U);
+    if (is_raw) continue;
+    refused(fields.attached(gzip(data.substr(0, data.size() - 1))),
+            "the data end after 262145 bytes; the header announces 262146");
+    refused(fields.attached(gzip(data.substr(0, 131073))),
+            "the data end after 131073 bytes; the header announces 262146");
+    EXPECT_EQ(read(fields.attached(gzip(data + "x"))).warnings.size(), 1U);
+  }
 }
 
 TEST_F(VolumeNrrd, RefusesDamagedGzipData) {
