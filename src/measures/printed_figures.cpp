@@ -61,15 +61,21 @@ std::optional<double> largest_rise(const Printed& printed) {
 
 std::optional<double> loss(const Printed& printed) { return 1 - printed.y.front() / printed.x.front(); }
 
+std::optional<double> difference(const Printed& printed) { return printed.x.front() - printed.y.front(); }
+
 struct Operation {
   std::string_view name;
   std::optional<double> (*apply)(const Printed&);
 };
 
 constexpr std::array operations{
-    Operation{"largest_ratio", largest_ratio}, Operation{"fitted_exponent", fitted_exponent},
-    Operation{"psnr", peak_to_noise},          Operation{"first_below", first_below},
-    Operation{"largest_rise", largest_rise},   Operation{"loss", loss},
+    Operation{"largest_ratio", largest_ratio},
+    Operation{"fitted_exponent", fitted_exponent},
+    Operation{"psnr", peak_to_noise},
+    Operation{"first_below", first_below},
+    Operation{"difference", difference},
+    Operation{"largest_rise", largest_rise},
+    Operation{"loss", loss},
 };
 
 Numbers read_numbers(const JsonReader& json) {
@@ -113,7 +119,7 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
        .description =
            "largest_ratio: of x to y; fitted_exponent: of y as a power of x, by least squares; psnr: x over y in "
            "dB; first_below: the first x whose y is below the limit; largest_rise: of a y to the one before; "
-           "loss: 1 - y / x",
+           "loss: 1 - y / x; difference: x - y",
        .cell = [](const Record& record) { return record.printed->operation; }},
       {.name = "value", .description = "what follows from the numbers", .cell = &Record::value},
   };
