@@ -73,7 +73,7 @@ TEST(SignalError, AgreesWithAdaptiveQuadrature) {
     using Quadrature = boost::math::quadrature::gauss_kronrod<double, 61>;
     double sum = 0;
     for (int k = 0; k < 50; ++k) sum += Quadrature::integrate(difference, 0.1 * k, 0.1 * (k + 1), 15, 1e-9);
-    EXPECT_NEAR(xi(signal, approximation), sum, 1e-6 * sum);
+    EXPECT_NEAR(xi(signal, approximation), sum, 1e-12 * sum);
   }
 }
 

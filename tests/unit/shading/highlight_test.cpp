@@ -61,9 +61,9 @@ TEST(Highlight, TheConeLosesEnergyAndConeEnergyDoesNot) {
     return over(0, foot) + over(foot, std::acos(0.0));
   };
   for (const double n : shininesses) {
-    EXPECT_NEAR(energy(highlight_of("lobe"), n), 1 / (n + 1), 1e-10);
-    EXPECT_NEAR(energy(highlight_of("cone"), n) * (n + 1), (n + 1) / (2 * n), 1e-10) << n;
-    EXPECT_NEAR(energy(highlight_of("cone_energy"), n) * (n + 1), 1, 1e-10) << n;
+    EXPECT_NEAR(energy(highlight_of("lobe"), n) * (n + 1), 1, 8e-15) << n;
+    EXPECT_NEAR(energy(highlight_of("cone"), n) * (n + 1), (n + 1) / (2 * n), 8e-15) << n;
+    EXPECT_NEAR(energy(highlight_of("cone_energy"), n) * (n + 1), 1, 8e-15) << n;
   }
 }
 

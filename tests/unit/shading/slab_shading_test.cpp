@@ -122,6 +122,8 @@ TEST(SlabShading, LumInterpolatesTheLightOfBothEnds) {
 
 // --- Moments ---
 
+constexpr double tent_precision = 2e-15;
+
 TEST(SlabMoments, OfHomogeneousSlabs) {
   for (const double depth : {0.0, 1e-9, 0.3, 1.999, 2.0, 7.0, 300.0}) {
     const PiecewiseLinear transfer({{0, {depth / 2, {1, 0.5, 0}}}});
@@ -136,6 +138,23 @@ TEST(SlabMoments, OfHomogeneousSlabs) {
   // In closed form: J_1 = (1 - (1 + y) e^-y) / y^2.
   EXPECT_NEAR(homogeneous_moments(1.5)[1], (1 - 2.5 * std::exp(-1.5)) / 2.25, 1e-16);
   EXPECT_NEAR(homogeneous_moments(40)[1], (1 - 41 * std::exp(-40.0)) / 1600, 1e-18);
+}
+
+/// The tent's moment in closed form, 2 ((1 - e^(-y/2)) / y)^2 y of what is white; points of the transfer function,
+/// which here say nothing, put panels askew to its top.
+TEST(SlabMoments, OfTheTent) {
+  for (const double depth : {1e-9, 0.3, 2.0, 7.0, 60.0}) {
+    std::vector<TransferPoint> points;
+    for (const double s : {0.1, 0.23, 0.61, 0.9}) points.push_back({s, {depth / 2, {1, 0.5, 0}}});
+    const double share = -std::expm1(-depth / 2) / depth;
+    for (const bool is_forward : {true, false}) {
+      const SlabOptics optics(PiecewiseLinear(points), is_forward ? 0.0 : 1.0, is_forward ? 1.0 : 0.0, 2);
+      const auto found = slab_moments(optics, Emission::associated);
+      EXPECT_NEAR(found.white[4] / (2 * share * share * depth), 1, tent_precision) << depth;
+      EXPECT_NEAR(found.bare[4] / (4 * share * share), 1, tent_precision) << depth;
+      EXPECT_NEAR(found.colored[4][1] / (share * share * depth), 1, tent_precision) << depth;
+    }
+  }
 }
 
 TEST(SlabMoments, AreCertified) {
