@@ -410,7 +410,7 @@ TEST(CellAdaptive, WeighsFirstSamplesAgainstSecondOnes) {
   EXPECT_EQ(inner_samples({2, 0.795}, 5), (std::vector{1, 1}));
 }
 
-/// The same constant, from the areas themselves: along rays in all directions through white noise, where what a line
+/// Its constant follows from the areas themselves: along rays in all directions through white noise, where what a line
 /// misses of a cell is l/6 |p_2| and what a parabola does l/32 |p_3|, p_2 and p_3 the coefficients of u (u - 1) and
 /// u (u - 1/2) (u - 1).
 TEST(CellAdaptive, ItsConstantIsThatOfWhiteNoise) {
