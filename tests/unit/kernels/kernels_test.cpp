@@ -270,33 +270,59 @@ TEST(PieceIntegral, TheHighestFrequenciesOfTheDepthAreCovered) {
     }
 }
 
-// tau = depth (1 - x) from where x is 1: what is seen of it hangs on the last digits of x, which halving rounds.
+/// The scalar swings between -1 and 1 on the front quarter, by coefficients of up to 10^10 for all of the piece, most
+/// of which is hidden: halving rounds these.
 TEST(PieceIntegral, HalvingAddsToTheErrorOfTheScalar) {
-  constexpr double depth = 0x1p19;  // 14 halvings
-  for (std::uint64_t i = 0; i < 40; ++i) {
-    LinearPiece<9> piece{.extinction_at_0 = depth, .length = 1};
-    Bernstein<9, Real50> clear;
+  Bernstein<9, Real50> front;
+  Real50 coefficient = -1;  // of T_9
+  for (int j = 0; j <= 9; ++j) {
+    front.coefficients[static_cast<std::size_t>(j)] = coefficient;
+    coefficient *= -(Real50(17) - 2 * j) / (2 * j + 1);
+  }
+  const auto whole = front.restricted(Real50(0), Real50(4));
+  constexpr double depth = 800;
+  LinearPiece<9> piece{.extinction_at_0 = depth, .extinction_at_1 = depth, .length = 1};
+  Bernstein<9, Real50> x;
+  for (std::size_t j = 0; j <= 9; ++j) x.coefficients[j] = piece.x[j] = to_double(whole.coefficients[j]);
+  Real50 exact = 0;
+  constexpr int parts = 32;  // of the front quarter; e^-200 is seen of the rest
+  for (int part = 0; part < parts; ++part)
+    exact += boost::math::quadrature::gauss<Real50, 25>::integrate(
+        [&](const Real50& u) { return Real50(x.value(u) * depth * exp(Real50(-depth * u))); },
+        Real50(part) / (4 * parts), Real50(part + 1) / (4 * parts));
+  for (const auto& integral : {integrate(piece, Emission::associated), integrate_scalar(piece, Emission::associated)}) {
+    EXPECT_LE(to_double(abs(Real50(integral.weight_1 - exact))), integral.weight_error);
+    EXPECT_LE(integral.weight_error, 1e-4);
+  }
+}
+
+/// The halves of an opacity piece are within their errors of what they should be.
+TEST(OpacityPiece, HalvesCarryWhatTheyRound) {
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    OpacityPiece<9> piece{.x_error = 0x1p-60, .clear_error = 0x1p-60, .length = 1, .units = 1};
     for (std::size_t j = 0; j <= 9; ++j) {
-      piece.x[j] = j == 0 ? 1 : 1 - uniform(50 + j, i);
-      clear.coefficients[j] = 1 - Real50(piece.x[j]);
+      piece.x[j] = 3 * uniform(70 + j, i) - 1;
+      piece.opacity[j] = 0.7 * uniform(80 + j, i);
+      piece.clear[j] = 1 - piece.opacity[j];
     }
-    const auto depth_up_to = clear.antiderivative();
-    Real50 end = 1;
-    while (depth * depth_up_to.value(end) > 200) end /= 2;
-    Real50 exact = 0;  // of (1 - x) tau T
-    constexpr int parts = 16;
-    for (int part = 0; part < parts; ++part)
-      exact += boost::math::quadrature::gauss<Real50, 25>::integrate(
-          [&](const Real50& u) {
-            const Real50 here = clear.value(u);
-            return Real50(depth * here * here * exp(Real50(-depth * depth_up_to.value(u))));
-          },
-          Real50(end * part / parts), Real50(end * (part + 1) / parts));
-    for (const auto& integral :
-         {integrate(piece, Emission::associated), integrate_scalar(piece, Emission::associated)}) {
-      EXPECT_LE(to_double(abs(Real50(integral.weight_0 - exact))), integral.weight_error) << i;
-      EXPECT_LE(integral.weight_error, 1e-10) << i;
-    }
+    const auto halved = halves(piece);
+    const auto expect_half = [&](const OpacityPiece<9>& half, double begin, double end) {
+      const auto expect_near = [&](const std::array<double, 10>& found, const std::array<double, 10>& of,
+                                   double error) {
+        Bernstein<9, Real50> exact;
+        std::copy(of.begin(), of.end(), exact.coefficients.begin());
+        exact = exact.restricted(Real50(begin), Real50(end));
+        double worst = 0;
+        for (std::size_t j = 0; j <= 9; ++j)
+          worst = std::max(worst, std::abs(to_double(Real50(found[j] - exact.coefficients[j]))));
+        EXPECT_LE(0x1p-60 + worst, error);
+        EXPECT_GT(worst, 0);
+      };
+      expect_near(half.x, piece.x, half.x_error);
+      expect_near(half.clear, piece.clear, half.clear_error);
+    };
+    expect_half(halved.first, 0, 0.5);
+    expect_half(halved.second, 0.5, 1);
   }
 }
 
