@@ -189,6 +189,7 @@ class Agreement(ProgramTest):
             ("/measures/0", "constant step"),
             ("/published/0/measured", "perhaps xi_p50"),
             ("/published/1/claim", "once"),
+            ("/published/1/test", "at_least <= at_most"),
             ("/published/0/row/field", "white"),
             ("/published/0/row/colour", "column"),
             ("/checks/0/rows/field/0", "white"),
