@@ -270,32 +270,6 @@ TEST(PieceIntegral, TheHighestFrequenciesOfTheDepthAreCovered) {
     }
 }
 
-/// The scalar swings between -1 and 1 on the front quarter, by coefficients of up to 10^10 for all of the piece, most
-/// of which is hidden: halving rounds these.
-TEST(PieceIntegral, HalvingAddsToTheErrorOfTheScalar) {
-  Bernstein<9, Real50> front;
-  Real50 coefficient = -1;  // of T_9
-  for (int j = 0; j <= 9; ++j) {
-    front.coefficients[static_cast<std::size_t>(j)] = coefficient;
-    coefficient *= -(Real50(17) - 2 * j) / (2 * j + 1);
-  }
-  const auto whole = front.restricted(Real50(0), Real50(4));
-  constexpr double depth = 800;
-  LinearPiece<9> piece{.extinction_at_0 = depth, .extinction_at_1 = depth, .length = 1};
-  Bernstein<9, Real50> x;
-  for (std::size_t j = 0; j <= 9; ++j) x.coefficients[j] = piece.x[j] = to_double(whole.coefficients[j]);
-  Real50 exact = 0;
-  constexpr int parts = 32;  // of the front quarter; e^-200 is seen of the rest
-  for (int part = 0; part < parts; ++part)
-    exact += boost::math::quadrature::gauss<Real50, 25>::integrate(
-        [&](const Real50& u) { return Real50(x.value(u) * depth * exp(Real50(-depth * u))); },
-        Real50(part) / (4 * parts), Real50(part + 1) / (4 * parts));
-  for (const auto& integral : {integrate(piece, Emission::associated), integrate_scalar(piece, Emission::associated)}) {
-    EXPECT_LE(to_double(abs(Real50(integral.weight_1 - exact))), integral.weight_error);
-    EXPECT_LE(integral.weight_error, 1e-4);
-  }
-}
-
 /// The halves of an opacity piece are within their errors of what they should be.
 TEST(OpacityPiece, HalvesCarryWhatTheyRound) {
   for (std::uint64_t i = 0; i < 100; ++i) {
