@@ -30,6 +30,7 @@ extern const Measure opacity_recursion_measure;
 extern const Measure optimal_table_measure;
 extern const Measure orders_measure;
 extern const Measure partial_pre_integration_measure;
+extern const Measure paper_identities_measure;
 extern const Measure printed_figures_measure;
 extern const Measure reference_proof_measure;
 extern const Measure second_order_distance_measure;
@@ -97,6 +98,7 @@ std::span<const Measure* const> measures() {
       &images_measure,
       &costs_measure,
       &printed_figures_measure,
+      &paper_identities_measure,
       &error_waterfall_measure,
       &optimal_table_measure,
   };
