@@ -77,7 +77,7 @@ TEST_P(ReferenceProof, AgreesWithArb) {
       const double most = static_cast<TransferShape>(transfer) == TransferShape::table ? 2e-13 : 1e-13;
       EXPECT_LE(here.radius, most * scale_of(asked, emission)) << text(here);
       if (emission == Emission::associated && there.opacity > 1e-12 && there.opacity < 1e-6) {
-        EXPECT_LE(here.radius, 1e-10 * there.opacity) << text(here);
+        EXPECT_LE(here.radius, 2e-12 * there.opacity) << text(here);
       }
     }
   }
