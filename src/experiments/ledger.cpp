@@ -31,8 +31,7 @@ Json columns() {
       {"part", "which of several figures of the claim"},
       {"kind",
        "claim; finding: what no publication says but a reader should know; internal consistency: printed numbers "
-       "against "
-       "each other"},
+       "against each other"},
       {"claim_verdict",
        "of the claim as a whole: its parts' verdict, leaving out what is not comparable; mixed where they differ, "
        "compatible where they are reproduced and compatible"},
@@ -52,7 +51,7 @@ Json columns() {
       {"low", "lower end of what was measured"},
       {"high", "its upper end"},
       {"range", "what low and high are: two columns, a radius, or the extremes of so many rows"},
-      {"percentile", "of the printed figure among what was measured, in percent"},
+      {"percentile", "how much of what was measured lies below the printed figure, from 0 to 1"},
       {"verdict",
        "of this part: reproduced, compatible, contradicted, not comparable or not measured; found or not found; "
        "consistent or inconsistent"},

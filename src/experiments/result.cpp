@@ -185,10 +185,14 @@ Json judged_again(const JsonReader& result, const Experiment& experiment) {
     was.erase(words);
     is.erase(words);
   }
-  for (const auto& [name, member] : is.items())
-    if (!was.contains(name) || was[name] != member)
-      result.at("experiment")
-          .refuse("a run whose \"" + name + "\" is another one", "rows of the experiment as it is; run it");
+  const auto need_same = [&result](const Json& here, const Json& there) {
+    for (const auto& [name, member] : here.items())
+      if (!there.contains(name) || there[name] != member)
+        result.at("experiment")
+            .refuse("a run whose \"" + name + "\" is another one", "rows of the experiment as it is; run it");
+  };
+  need_same(is, was);
+  need_same(was, is);  // what the experiment no longer has
   std::vector<Row> rows;
   for (const JsonReader& row : result.at("rows").items(0)) rows.push_back(read_row(row));
   std::vector<Column> columns;

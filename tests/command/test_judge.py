@@ -41,6 +41,8 @@ class Judge(ProgramTest):
     def test_rows_of_another_experiment(self):
         other = self.write("other.json", changed(EXPERIMENT, "/rays/count", 65))
         self.assert_refused(self.run_program("judge", other, "result.json"), "result.json: /experiment: ")
+        self.write("result.json", changed(self.result, "/experiment/gl", "osmesa"))  # which the experiment does not have
+        self.assert_refused(self.run_program("judge", "experiment.json", "result.json"), "result.json: /experiment: ", "gl")
 
 
 if __name__ == "__main__":
