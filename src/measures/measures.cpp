@@ -32,6 +32,11 @@ extern const Measure orders_measure;
 extern const Measure partial_pre_integration_measure;
 extern const Measure paper_identities_measure;
 extern const Measure printed_figures_measure;
+extern const Measure quadratic_gray_fit_measure;
+extern const Measure quadratic_r_axis_measure;
+extern const Measure quadratic_simpson_measure;
+extern const Measure quadratic_slips_measure;
+extern const Measure quadratic_table_builds_measure;
 extern const Measure reference_proof_measure;
 extern const Measure second_order_distance_measure;
 extern const Measure second_order_table_measure;
@@ -57,6 +62,7 @@ std::span<const Measure* const> measures() {
       &signal_error_measure,
       &cell_cubic_measure,
       &turning_points_measure,
+      &quadratic_gray_fit_measure,
       &orders_measure,
       &virtual_samples_measure,
       &frequency_response_measure,
@@ -71,6 +77,10 @@ std::span<const Measure* const> measures() {
       &reference_proof_measure,
       &table_builds_measure,
       &weighted_tables_measure,
+      &quadratic_table_builds_measure,
+      &quadratic_simpson_measure,
+      &quadratic_r_axis_measure,
+      &quadratic_slips_measure,
       &distance_axis_measure,
       &eta_measure,
       &cone_lobe_measure,

@@ -108,6 +108,7 @@ Json schema_of_names() {
             {"highlight", words_json(names_of(catalogue::highlights()))},
             {"table_builder", words_json(names_of(catalogue::table_builders()))},
             {"second_order_builder", words_json(names_of(catalogue::second_order_builders))},
+            {"quadratic_gray_builder", words_json(names_of(catalogue::quadratic_gray_builders()))},
             {"generated_field", files("fields", names_of(generated_field_kinds))},
             {"measure", files("measures", names_of(measures()))},
             {"measure_name", measures_json([](const Measure& /*measure*/) { return true; })},
@@ -117,10 +118,11 @@ Json schema_of_names() {
             {"measure_of_transfers", measures_json([](const Measure& measure) { return measure.needs.transfers; })}}}};
 }
 
-/// The builders of tables over two scalars, over three, and of psi.
+/// The builders of tables over two scalars, over three, over two and a curvature, and of psi.
 Json tables_json() {
   Json list = entries_json(catalogue::table_builders());
   for (const Json& row : entries_json(catalogue::second_order_builders)) list.push_back(row);
+  for (const Json& row : entries_json(catalogue::quadratic_gray_builders())) list.push_back(row);
   list.push_back({{"name", catalogue::psi_builder.name}, {"summary", catalogue::psi_builder.summary}});
   return list;
 }

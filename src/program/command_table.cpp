@@ -42,6 +42,8 @@ Json description(const TableCase& asked, const MadeTable& table, const std::file
             {"entries",
              "entry i of n stands for low + (high - low) i / (n - 1); as a texture it has its centre at "
              "(i + 1/2) / n"}};
+  if (!table.radius.is_null()) text["radius"] = table.radius;
+  if (table.last_scalar && *table.last_scalar != asked.axes.high) text["high"] = *table.last_scalar;
   if (asked.transfer) text["colors"] = "opacity-weighted: composite with C += T C_slab, T *= 1 - opacity";
   if (!asked.transfer_description.is_null()) text["transfer_function"] = asked.transfer_description;
   text["error"] = table.error;
@@ -106,6 +108,11 @@ const Command table_command{
         "   \"builder\": \"exact\", \"size\": 256, \"length\": 1, \"range\": [0, 255], \"format\": \"float32\"}\n\n"
         "`raytruth list tables` tells the builders. Those over three scalars are for slabs whose scalar is a "
         "parabola;\n"
+        "quadratic_gray and quadratic_gray_printed stand over two scalars and the parabola's curvature a = +-1 / R^2, "
+        "in\n"
+        "gray values (0 to 255 over the range) per squared length, whose nodes \"radius\" states:\n"
+        "  \"radius\": {\"axis\": \"signed\", \"low\": 0.125, \"high\": 8, \"count\": 7}\n"
+        "or powers_of_two, or equal_steps; `count` radii R for either sign of a, and the linear table between.\n"
         "psi of Moreland and Angel takes \"builder\", \"size\" and \"format\" alone.",
     .describe = describe};
 

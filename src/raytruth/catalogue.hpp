@@ -9,6 +9,7 @@
 #include "raytruth/signals/fields/generated_fields.hpp"
 #include "raytruth/signals/signal_kinds.hpp"
 #include "raytruth/tables/partial_pre_integration.hpp"
+#include "raytruth/tables/quadratic_gray_table.hpp"
 #include "raytruth/tables/second_order.hpp"
 #include "raytruth/tables/table_builders.hpp"
 #include "raytruth/transfer/study_transfers.hpp"

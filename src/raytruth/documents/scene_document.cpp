@@ -4,6 +4,7 @@
 #include "raytruth/core/named.hpp"
 #include "raytruth/documents/case_json.hpp"
 #include "raytruth/documents/field_document.hpp"
+#include "raytruth/documents/radius_axis_json.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
 #include "raytruth/documents/scene_warnings.hpp"
 #include "raytruth/reference/ray_integral.hpp"
@@ -110,23 +111,43 @@ std::optional<double> read_step(const JsonReader& json) {
   return step->positive_number();
 }
 
+/// The builders whose tables a scheme reads its slabs from, the default first; none: it has none.
+std::vector<std::string_view> builders_of(std::string_view scheme) {
+  if (scheme == "order1") {
+    auto names = names_of(catalogue::table_builders());
+    const auto standard = std::find(names.begin(), names.end(), SceneTable{}.builder);
+    std::rotate(names.begin(), standard, standard + 1);
+    return names;
+  }
+  std::vector<std::string_view> names;
+  if (scheme == "order2") names = names_of(catalogue::second_order_builders);
+  for (const QuadraticGrayBuilder& builder : catalogue::quadratic_gray_builders())
+    if (scheme == "order2" || scheme == builder.name) names.push_back(builder.name);
+  return names;
+}
+
 SceneTable read_table(const JsonReader& json, const std::string& scheme) {
-  if (scheme != "order1" && scheme != "order2")
-    json.refuse(fmt::format("a table with the scheme {}", scheme), "one with the scheme order1 or order2");
-  const bool is_second_order = scheme == "order2";
-  const auto names =
-      is_second_order ? names_of(catalogue::second_order_builders) : names_of(catalogue::table_builders());
+  const std::vector<std::string_view> names = builders_of(scheme);
+  if (names.empty())
+    json.refuse(fmt::format("a table with the scheme {}", scheme),
+                "one with the scheme order1, order2, quadratic_gray or quadratic_gray_printed");
   SceneTable table;
-  if (is_second_order) table.builder = names.front();
+  table.builder = names.front();
   if (const auto builder = json.find("builder")) table.builder = builder->word(names);
   const SecondOrderBuilder* const second_order = find_named(catalogue::second_order_builders, table.builder);
+  const QuadraticGrayBuilder* const quadratic = find_named(catalogue::quadratic_gray_builders(), table.builder);
   if (second_order != nullptr && second_order->takes_iterations) {
     json.only({"builder", "iterations", "size", "format", "filter"});
     table.iterations = static_cast<int>(json.at("iterations").integer(1, most_table_iterations));
+  } else if (quadratic != nullptr) {
+    json.only({"builder", "size", "radius", "format", "filter"});
+    if (const auto radius = json.find("radius")) table.radius = read_radius_axis(*radius, quadratic->radius);
   } else {
     json.only({"builder", "size", "format", "filter"});
   }
-  const std::size_t largest = is_second_order ? largest_table3_size : largest_table_size;
+  std::size_t largest = largest_table_size;
+  if (second_order != nullptr) largest = largest_table3_size;
+  if (quadratic != nullptr) largest = largest_quadratic_size;
   table.size = static_cast<std::size_t>(json.at("size").integer(2, static_cast<std::int64_t>(largest)));
   if (const auto format = json.find("format")) {
     table.format = *find_named(table_formats, format->word(names_of(table_formats)));

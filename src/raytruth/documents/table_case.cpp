@@ -4,6 +4,7 @@
 #include "raytruth/core/named.hpp"
 #include "raytruth/core/random.hpp"
 #include "raytruth/documents/case_json.hpp"
+#include "raytruth/documents/radius_axis_json.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
 #include "raytruth/reference/ray_integral.hpp"
 #include "raytruth/tables/exact.hpp"
@@ -25,6 +26,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t largest_size = 4096;
 constexpr std::int64_t most_iterations = 65536;
+constexpr std::string_view certified_quadratic_gray = "quadratic_gray";
 constexpr std::uint64_t psi_places_judged = 4096;
 constexpr std::uint64_t seed = 1;  ///< of the places
 
@@ -87,6 +89,35 @@ MadeTable parabolic_table(const TableCase& asked, const SecondOrderMethod& metho
               error_json(second_order_look_up_error(table, *asked.transfer, asked.axes, asked.emission, asked.format))};
 }
 
+/// The model's exact table has certified entries, proven ones; that of the print is what it is.
+MadeTable quadratic_table(const TableCase& asked, const QuadraticGrayAsked& quadratic) {
+  const bool is_certified = quadratic.builder->name == certified_quadratic_gray;
+  QuadraticGrayTable<double> table;
+  Json nodes;
+  if (is_certified) {
+    CertifiedQuadraticGray certified =
+        certified_quadratic_gray_table(*asked.transfer, asked.axes, quadratic.radius, asked.emission);
+    table = std::move(certified.table);
+    nodes = {{"error_bound", certified.radius}};
+  } else {
+    table = in_binary64(quadratic.builder->make(*asked.transfer, asked.axes, quadratic.radius, asked.emission));
+    nodes = {{"error_bound", nullptr}, {"why", "sums over gray values as printed"}};
+  }
+  Json error =
+      error_json(quadratic_gray_look_up_error(table, *asked.transfer, asked.axes, asked.emission, asked.format));
+  error["entries"] = nodes;
+  error["of_places"] = "random scalars at both ends, curvatures spread evenly over the nodes of their axis";
+  const std::size_t n = asked.axes.size;
+  Json axes{"curvature, in gray values per squared length", "back scalar", "front scalar", "red, green, blue, opacity"};
+  MadeTable made{.shape = {table.radius.node_count(), n, n, 4},
+                 .values = std::move(table.values),
+                 .axes = std::move(axes),
+                 .error = std::move(error)};
+  made.radius = radius_axis_json(quadratic.radius);
+  made.last_scalar = table.axes.high;
+  return made;
+}
+
 MadeTable psi_table(const TableCase& asked) {
   const PsiTable table(asked.axes.size);
   std::vector<double> in_file = table.values();
@@ -118,27 +149,38 @@ TableCase read_table_case(const JsonReader& json, std::vector<std::string>& warn
   check_form(json, "table/1");
   std::vector<std::string_view> names = names_of(catalogue::second_order_builders);
   names.push_back(catalogue::psi_builder.name);
+  for (const std::string_view name : names_of(catalogue::quadratic_gray_builders())) names.push_back(name);
   for (const std::string_view name : names_of(catalogue::table_builders())) names.push_back(name);
   const std::string name = json.at("builder").word(names);
   TableCase asked{
       .builder = PartialPreIntegration{}, .transfer = {}, .axes = {}, .format = table_formats[1], .json = json};
 
   const SecondOrderBuilder* const second_order = find_named(catalogue::second_order_builders, name);
+  const QuadraticGrayBuilder* const quadratic = find_named(catalogue::quadratic_gray_builders(), name);
   const bool is_psi = name == catalogue::psi_builder.name;
   if (is_psi)
     json.only({"raytruth", "builder", "size", "format"});
+  else if (quadratic != nullptr)
+    json.only({"raytruth", "transfer_function", "emission", "builder", "size", "length", "range", "radius", "format"});
   else if (second_order != nullptr && second_order->takes_iterations)
     json.only(
         {"raytruth", "transfer_function", "emission", "builder", "iterations", "size", "length", "range", "format"});
   else
     json.only({"raytruth", "transfer_function", "emission", "builder", "size", "length", "range", "format"});
-  const auto largest = second_order != nullptr ? static_cast<std::int64_t>(largest_table3_size) : largest_size;
+  std::int64_t largest = largest_size;
+  if (second_order != nullptr) largest = static_cast<std::int64_t>(largest_table3_size);
+  if (quadratic != nullptr) largest = static_cast<std::int64_t>(largest_quadratic_size);
   asked.axes.size = static_cast<std::size_t>(json.at("size").integer(2, largest));
-  if (second_order != nullptr)
+  if (second_order != nullptr) {
     asked.builder = second_order->method(
         second_order->takes_iterations ? static_cast<int>(json.at("iterations").integer(1, most_iterations)) : 0);
-  else if (!is_psi)
+  } else if (quadratic != nullptr) {
+    QuadraticGrayAsked of_model{.builder = quadratic, .radius = quadratic->radius};
+    if (const auto radius = json.find("radius")) of_model.radius = read_radius_axis(*radius, quadratic->radius);
+    asked.builder = of_model;
+  } else if (!is_psi) {
     asked.builder = find_named(catalogue::table_builders(), name);
+  }
   if (!is_psi) read_slabs(json, asked, warnings);
   if (const auto format = json.find("format")) {
     asked.format = *find_named(table_formats, format->word(names_of(table_formats)));
@@ -150,6 +192,8 @@ MadeTable make_table(const TableCase& asked) {
   if (const auto* const builder = std::get_if<const TableBuilder*>(&asked.builder))
     return linear_table(asked, **builder);
   if (const auto* const method = std::get_if<SecondOrderMethod>(&asked.builder)) return parabolic_table(asked, *method);
+  if (const auto* const quadratic = std::get_if<QuadraticGrayAsked>(&asked.builder))
+    return quadratic_table(asked, *quadratic);
   return psi_table(asked);
 }
 

@@ -2,6 +2,7 @@
 
 #include "raytruth/documents/json/json_reader.hpp"
 #include "raytruth/tables/look_up.hpp"
+#include "raytruth/tables/quadratic_gray_table.hpp"
 #include "raytruth/tables/second_order.hpp"
 #include "raytruth/tables/table_builder.hpp"
 #include "raytruth/transfer/emission.hpp"
@@ -20,9 +21,15 @@ namespace raytruth {
 /// The table of psi (tables/partial_pre_integration.hpp), which no transfer function takes part in.
 struct PartialPreIntegration {};
 
+/// A table of the quadratic gray-value model.
+struct QuadraticGrayAsked {
+  const QuadraticGrayBuilder* builder = nullptr;
+  RadiusAxis radius = {};
+};
+
 /// A case of `raytruth table`; experiments/schemas/table.json describes it.
 struct TableCase {
-  std::variant<const TableBuilder*, SecondOrderMethod, PartialPreIntegration> builder;
+  std::variant<const TableBuilder*, SecondOrderMethod, QuadraticGrayAsked, PartialPreIntegration> builder;
   std::optional<PiecewiseLinear> transfer;  ///< none: partial pre-integration needs none
   nlohmann::ordered_json transfer_description =
       {};  ///< of another program's file; null: the points are of this program
@@ -38,9 +45,11 @@ TableCase read_table_case(const JsonReader& json, std::vector<std::string>& warn
 /// A table's numbers in C order, and what is known of it.
 struct MadeTable {
   std::vector<std::size_t> shape;
-  std::vector<double> values;    ///< not rounded to the format yet
-  nlohmann::ordered_json axes;   ///< what each of them means
-  nlohmann::ordered_json error;  ///< of look-ups in the format's numbers, against proven values
+  std::vector<double> values;              ///< not rounded to the format yet
+  nlohmann::ordered_json axes;             ///< what each of them means
+  nlohmann::ordered_json error;            ///< of look-ups in the format's numbers, against proven values
+  nlohmann::ordered_json radius = {};      ///< of a quadratic table: its axis; else null
+  std::optional<double> last_scalar = {};  ///< of the last entry, where that is not the range's end
 };
 
 MadeTable make_table(const TableCase& asked);

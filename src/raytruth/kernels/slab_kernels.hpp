@@ -44,6 +44,40 @@ struct ParabolaRow {
   std::ptrdiff_t upper = 0;  ///< end of all lanes
 };
 
+/// Where a slab of a diagonal is integrated by a quadrature rule, for all of them the same.
+struct DiagonalNode {
+  float weight = 0;      ///< its share of the slab; for plain emission of its length
+  float place = 0;       ///< in the interval of entries, 0 at the lower and 1 at the upper one
+  float depth_rate = 0;  ///< what the lower entry's rate is multiplied by to give the depth from the stretch's front
+  float depth_difference = 0;  ///< the same of the difference of the rates
+};
+
+/// A stretch of the slabs of a diagonal of a quadratic table that lies between two neighbouring entries.
+struct DiagonalStretch {
+  std::ptrdiff_t entry = 0;  ///< the lower one, counted from the slab's front
+  float depth_rate = 0;
+  float depth_difference = 0;
+  std::size_t first_node = 0;
+  std::size_t node_count = 0;
+  bool is_thin = false;         ///< its depth in powers of two is at most 1/2 for every slab
+  bool by_moments = false;      ///< thin, and from one of the entries to the other: no nodes are asked for
+  bool is_faint = false;        ///< by moments, its depth at most 1/50
+  bool falls = false;           ///< from the upper entry to the lower one
+  float moment_difference = 0;  ///< by moments: what the difference of the rates is multiplied by to give that of x^2
+};
+
+/// Slabs whose ends are equally many entries apart and whose parabola is the same: they meet entries at the same
+/// places.
+struct DiagonalSlabs {
+  const DiagonalStretch* stretches = nullptr;  ///< front to back
+  std::size_t stretch_count = 0;
+  const DiagonalNode* nodes = nullptr;
+  std::size_t first = 0;   ///< entry of the first slab's front
+  std::size_t count = 0;   ///< of slabs, each one's front one entry behind the last one's
+  std::size_t stride = 4;  ///< floats from texel to texel
+  bool is_plain = false;
+};
+
 /// The inner loops of renderers that read tables of slabs, and of tables of second order, in the version for one level
 /// of x86-64.
 struct SlabKernels {
@@ -62,6 +96,13 @@ struct SlabKernels {
   /// Rates are 2 tau length. Lanes whose lower end is not an entry, or above the upper end, or whose parabola is open
   /// upwards hold anything. Returns those that are too deep between two entries to be done here, a bit for each.
   std::uint32_t (*parabolas)(const TransferEntries&, const ParabolaRow&, float* rising, float* falling);
+
+  /// The slabs of a diagonal. Rates are tau length; entries are readable wherever stretches lead, and 16 behind.
+  void (*diagonal)(const TransferEntries&, const DiagonalSlabs&, float* texels);
+
+  /// Opacities of `count` slabs of a diagonal: 1 - exp(-sum_k weights[k] rates[i + k]). 16 readable rates follow.
+  void (*diagonal_opacities)(const float* rates, const float* weights, std::size_t weight_count, std::size_t count,
+                             float* opacities);
 };
 
 /// The versions that this processor can run, the best one first.

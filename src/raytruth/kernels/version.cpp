@@ -1,6 +1,7 @@
 // Compiled once for every level of x86-64, with RAYTRUTH_LEVEL naming it.
 
 #include "raytruth/kernels/cell_kernel.hpp"
+#include "raytruth/kernels/diagonal_kernel.hpp"
 #include "raytruth/kernels/look_up_kernel.hpp"
 #include "raytruth/kernels/moment_kernel.hpp"
 #include "raytruth/kernels/opacity_kernel.hpp"
@@ -96,7 +97,8 @@ extern const TableKernels kernels_of_tables;
 const TableKernels kernels_of_tables{float_lane_count, run_band<SlabAlgebra>, run_band<MomentAlgebra>};
 
 extern const SlabKernels kernels_of_slabs;
-const SlabKernels kernels_of_slabs{march_four, second_order_row, float_lane_count, parabolas};
+const SlabKernels kernels_of_slabs{march_four, second_order_row, float_lane_count,
+                                   parabolas,  diagonal_slabs,   diagonal_opacities};
 
 extern const CellKernels kernels_of_cells;
 const CellKernels kernels_of_cells{integrate_cells};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "raytruth/render/camera.hpp"
+#include "raytruth/schemes/radius_axis.hpp"
 #include "raytruth/shading/gooch.hpp"
 #include "raytruth/shading/lighting.hpp"
 #include "raytruth/shading/slab_shading.hpp"
@@ -28,10 +29,13 @@ enum class TableFilter { nearest, linear };
 
 inline constexpr std::array<std::string_view, 2> table_filter_names{"nearest", "linear"};
 
-/// A pre-integration table from which the slabs of `order1`, or `order2`, are read.
+/// A pre-integration table from which the slabs of `order1`, or the parabolas of `order2` and of the quadratic
+/// gray-value model, are read.
 struct SceneTable {
-  std::string builder = "exact";  ///< of catalogue::table_builders, or of catalogue::second_order_builders
-  int iterations = 64;            ///< of a builder that takes them
+  /// Of catalogue::table_builders, or of catalogue::second_order_builders or catalogue::quadratic_gray_builders.
+  std::string builder = "exact";
+  int iterations = 64;                    ///< of a builder that takes them
+  std::optional<RadiusAxis> radius = {};  ///< of a quadratic table; none: its builder's
   std::size_t size = 256;
   TableFormat format = table_formats[1];
   TableFilter filter = TableFilter::linear;

@@ -56,6 +56,7 @@ struct Rules {
 #include "raytruth/rules/order1.glsl"
 #include "raytruth/rules/order2.glsl"
 #include "raytruth/rules/order3.glsl"
+#include "raytruth/rules/quadratic_gray.glsl"
 #include "raytruth/rules/virtual_catmull_rom.glsl"
 #include "raytruth/rules/virtual_sample.glsl"
 #include "raytruth/rules/absorption.glsl"

@@ -216,6 +216,41 @@ std::vector<Twin> make_twins() {
   fades_highlight_twin.reconcile = [hump = fades_peak_twin.reconcile](std::span<float> numbers) {
     hump(numbers.subspan(5));
   };
+  // Signs are 1 or -1, and what is passed exists.
+  const auto to_sign = [](float& number) { number = number < 0 ? -1.0F : 1.0F; };
+  Twin quadratic_curvature_twin = twin(
+      "quadratic_gray_curvature", [](auto r) { return &decltype(r)::quadratic_gray_curvature; }, three_split, sum);
+  quadratic_curvature_twin.summand = [](std::span<const float> numbers, std::size_t) {
+    const auto length = static_cast<double>(numbers[3]);
+    return 4 * std::max({std::abs(numbers[0]), std::abs(numbers[1]), std::abs(numbers[2])}) / (length * length);
+  };
+  Twin quadratic_slope_twin = twin(
+      "quadratic_gray_slope", [](auto r) { return &decltype(r)::quadratic_gray_slope; },
+      {signal, signal, projection, split}, sum);
+  quadratic_slope_twin.summand = [](std::span<const float> numbers, std::size_t) {
+    return std::max({std::abs(numbers[0]), std::abs(numbers[1])}) / static_cast<double>(numbers[3]) + 1;
+  };
+  Twin quadratic_place_twin =
+      difference_twin(twin(
+                          "quadratic_gray_place", [](auto r) { return &decltype(r)::quadratic_gray_place; },
+                          {unit, projection, projection, projection}, sum),
+                      1);
+  quadratic_place_twin.reconcile = [to_sign](std::span<float> numbers) {
+    to_sign(numbers[2]);
+    to_sign(numbers[3]);
+    numbers[0] *= numbers[2];
+  };
+  Twin quadratic_node_twin =
+      difference_twin(twin(
+                          "quadratic_gray_node", [](auto r) { return &decltype(r)::quadratic_gray_node; },
+                          {projection, unit, unit, size}, sum),
+                      16);
+  quadratic_node_twin.reconcile = [](std::span<float> numbers) {
+    numbers[1] = std::max(numbers[1], 0x1p-6F);
+    numbers[2] = numbers[1] * (2 + 62 * std::abs(numbers[2]));
+    numbers[0] *= 2 * numbers[2];
+    numbers[3] = std::clamp(numbers[3], 1.0F, 16.0F);
+  };
   return {
       sum_twin(
           "order0", [](auto r) { return &decltype(r)::order0; }, {signal}, exact),
@@ -239,6 +274,22 @@ std::vector<Twin> make_twins() {
           "order3_middle", [](auto r) { return &decltype(r)::order3_middle; }, four, sum),
       sum_twin(
           "order3_back", [](auto r) { return &decltype(r)::order3_back; }, four, sum),
+      quadratic_curvature_twin,
+      difference_twin(sum_twin(
+                          "quadratic_gray_middle", [](auto r) { return &decltype(r)::quadratic_gray_middle; },
+                          {unit, unit, projection, unit}, sum),
+                      1),
+      quadratic_slope_twin,
+      difference_twin(twin(
+                          "quadratic_gray_value", [](auto r) { return &decltype(r)::quadratic_gray_value; },
+                          {unit, projection, projection, unit}, sum),
+                      1),
+      difference_twin(twin(
+                          "quadratic_gray_extremum", [](auto r) { return &decltype(r)::quadratic_gray_extremum; },
+                          {unit, projection, projection}, sum),
+                      1),
+      quadratic_place_twin,
+      quadratic_node_twin,
       sum_twin(
           "virtual_catmull_rom", [](auto r) { return &decltype(r)::virtual_catmull_rom; }, four, sum),
       sum_twin(

@@ -57,7 +57,16 @@ struct CellCubic {};
 /// Samples at cell borders and, as many as the budget leaves, inside the longest chords: `distribute_fetches`.
 struct CellAdaptive {};
 
-using Method = std::variant<Sampled, Ideal, WithoutAttenuation, Iterations, CellCubic, CellAdaptive>;
+/// The slabs of `order2` in the coordinates of the dissertation's quadratic gray-value model, exactly
+/// (schemes/quadratic_gray.hpp).
+struct QuadraticGrayModel {};
+
+/// The same model as it is printed, its gray values 0 to 255 being the scalars from the transfer function's first point
+/// to its last one (schemes/quadratic_gray_printed.hpp).
+struct QuadraticGrayPrintedModel {};
+
+using Method = std::variant<Sampled, Ideal, WithoutAttenuation, Iterations, CellCubic, CellAdaptive, QuadraticGrayModel,
+                            QuadraticGrayPrintedModel>;
 
 /// The slope of log error over log step where signal and transfer function are smooth, at equal steps whose number is a
 /// multiple of 6 (pairs and triples come out even); 0: the scheme has no step to have an order in.
@@ -86,18 +95,18 @@ struct IntegralScheme {
   std::string_view marker = {};       ///< of its points, as matplotlib names it
 };
 
-/// `sampled`, `ideal`, `no_attenuation`, `iterations` or `exact` (the last two of `Method`): the family in tables and
-/// plots.
+/// `sampled`, `ideal`, `no_attenuation`, `iterations`, `exact` or `printed`: the family in tables and plots.
 inline std::string_view family(const IntegralScheme& scheme) {
-  constexpr std::array<std::string_view, std::variant_size_v<Method>> names{"sampled",    "ideal", "no_attenuation",
-                                                                            "iterations", "exact", "exact"};
+  constexpr std::array<std::string_view, std::variant_size_v<Method>> names{
+      "sampled", "ideal", "no_attenuation", "iterations", "exact", "exact", "ideal", "printed"};
   return names[scheme.method.index()];
 }
 
 /// Whether the approximate signal is integrated exactly, so that its error is that of the signal alone.
 inline bool is_exact(const IntegralScheme& scheme) {
   return std::holds_alternative<Ideal>(scheme.method) || std::holds_alternative<CellCubic>(scheme.method) ||
-         std::holds_alternative<CellAdaptive>(scheme.method);
+         std::holds_alternative<CellAdaptive>(scheme.method) ||
+         std::holds_alternative<QuadraticGrayModel>(scheme.method);
 }
 
 }  // namespace raytruth

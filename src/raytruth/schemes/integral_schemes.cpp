@@ -138,6 +138,22 @@ std::vector<IntegralScheme> make_integral_schemes() {
   add_iterations(list, Order1::info);
   add_iterations(list, Order2::info);
 
+  list.push_back({.name = "quadratic_gray",
+                  .summary = "the slabs of order2 in the quadratic gray-value model's own coordinates, exactly",
+                  .source = "the dissertation, section 5.3, corrected",
+                  .method = QuadraticGrayModel{},
+                  .signal = Order2::info.name,
+                  .order = {Order2::info.integral_order, Order2::info.integral_order},
+                  .color = "#D55E00",
+                  .marker = "P"});
+  list.push_back({.name = "quadratic_gray_printed",
+                  .summary = "the same by sums over gray values, 256 of them, with all slips of the print",
+                  .source = "the dissertation, sections 5.3 and 5.5.2, algorithms 9 to 11",
+                  .method = QuadraticGrayPrintedModel{},
+                  .signal = Order2::info.name,
+                  .color = "#D55E00",
+                  .marker = "X"});
+
   list.push_back({.name = "cell_adaptive",
                   .summary = "samples at cell borders and inside the longest chords, as many as given",
                   .source = "this project",

@@ -46,6 +46,28 @@ Outcome<> counted(Outcome<> outcome, std::int64_t fetches, std::size_t slabs) {
   return outcome;
 }
 
+/// A slab of `order2`: the parabola of one or two pieces.
+struct ParabolicSlab {
+  double front = 0;
+  double back = 0;
+  double curvature = 0;  ///< second divided difference, per squared length
+  double length = 0;
+};
+
+ParabolicSlab parabola_of(SlabPieces pieces) {
+  const auto& first = pieces.front();
+  const auto& last = pieces.back();
+  ParabolicSlab slab{.front = first.polynomial.coefficients.front(),
+                     .back = last.polynomial.coefficients.back(),
+                     .length = first.length};
+  if (pieces.size() == 1) return slab;
+  slab.length += last.length;
+  slab.curvature = Rules<double>{}.order2_curvature(slab.front, last.polynomial.coefficients.front(), slab.back,
+                                                    first.length / slab.length) /
+                   (slab.length * slab.length);
+  return slab;
+}
+
 template <class A, class B>
 Difference difference(const A& a, const B& b) {
   return {a.color - b.color, a.opacity - b.opacity};
@@ -60,7 +82,9 @@ SchemeIntegral::SchemeIntegral(const PiecewiseLinear& transfer, Emission emissio
       emission_(emission),
       exact_(transfer, emission),
       look_up_(transfer, emission),
-      look_up_in_binary32_(transfer, emission) {}
+      look_up_in_binary32_(transfer, emission) {
+  if (!transfer.is_linear_in_opacity()) quadratic_gray_.emplace(transfer, emission);
+}
 
 template <int Degree>
 SchemeIntegral::Approximation SchemeIntegral::approximate_by(std::string_view name, const Chain<Degree>& signal,
@@ -170,6 +194,38 @@ Outcome<> SchemeIntegral::integrate(const CellAdaptive& /*method*/, const Integr
   Outcome<> outcome = integrate_exactly(one_slab_per_piece(approximation_, fetches), omissions);
   outcome.lookups = outcome.composites = static_cast<std::int64_t>(signal.pieces.size());
   return outcome;
+}
+
+template <int Degree>
+Outcome<> SchemeIntegral::integrate(const QuadraticGrayModel& /*method*/, const IntegralScheme& scheme,
+                                    const Chain<Degree>& signal, const Samples<double>& samples,
+                                    const Omissions& omissions) {
+  const Approximation approximation = approximate_by(scheme.signal, signal, samples);
+  if (!approximation.refusal.empty()) return refused(approximation.refusal);
+  if (!quadratic_gray_) return integrate_exactly(approximation, omissions);
+  return composite(approximation, omissions, [&](SlabPieces pieces) {
+    const ParabolicSlab slab = parabola_of(pieces);
+    return (*quadratic_gray_)(QuadraticGray::of_curvature(slab.front, slab.back, slab.curvature, slab.length));
+  });
+}
+
+template <int Degree>
+Outcome<> SchemeIntegral::integrate(const QuadraticGrayPrintedModel& /*method*/, const IntegralScheme& scheme,
+                                    const Chain<Degree>& signal, const Samples<double>& samples,
+                                    const Omissions& omissions) {
+  if (!quadratic_gray_) return refused("a transfer function that is linear in extinction is needed");
+  const double low = transfer_.points().front().s;
+  const double high = transfer_.points().back().s;
+  if (low == high) return refused("a transfer function with points at two scalars is needed, gray values 0 and 255");
+  const Approximation approximation = approximate_by(scheme.signal, signal, samples);
+  if (!approximation.refusal.empty()) return refused(approximation.refusal);
+  return composite(approximation, omissions, [&](SlabPieces pieces) {
+    const ParabolicSlab slab = parabola_of(pieces);
+    // Steps of one length differ by the rounding of their positions.
+    if (!printed_ || std::abs(printed_->length() - slab.length) > 1e-9 * slab.length)
+      printed_.emplace(transfer_, low, high, slab.length, emission_);
+    return (*printed_)(slab.front, slab.back, slab.curvature);
+  });
 }
 
 template <int Degree>

@@ -9,6 +9,8 @@
 #include "raytruth/schemes/omissions.hpp"
 #include "raytruth/schemes/optics_lookup.hpp"
 #include "raytruth/schemes/outcome.hpp"
+#include "raytruth/schemes/quadratic_gray.hpp"
+#include "raytruth/schemes/quadratic_gray_printed.hpp"
 #include "raytruth/schemes/samples.hpp"
 #include "raytruth/transfer/emission.hpp"
 
@@ -100,8 +102,17 @@ class SchemeIntegral {
   Outcome<> integrate(const CellAdaptive& method, const IntegralScheme& scheme, const Chain<Degree>& signal,
                       const Samples<double>& samples, const Omissions& omissions);
 
+  template <int Degree>
+  Outcome<> integrate(const QuadraticGrayModel& method, const IntegralScheme& scheme, const Chain<Degree>& signal,
+                      const Samples<double>& samples, const Omissions& omissions);
+  template <int Degree>
+  Outcome<> integrate(const QuadraticGrayPrintedModel& method, const IntegralScheme& scheme,
+                      const Chain<Degree>& signal, const Samples<double>& samples, const Omissions& omissions);
+
   PiecewiseLinear transfer_;
   Emission emission_;
+  std::optional<QuadraticGraySlabs> quadratic_gray_;  ///< none where the opacity is linear
+  std::optional<QuadraticGrayPrinted> printed_;       ///< of the last length of slabs that was asked for
   RayIntegral exact_;
   OpticsLookup<double> look_up_;
   OpticsLookup<Binary32> look_up_in_binary32_;

@@ -92,6 +92,30 @@ LookUpError second_order_look_up_error(const Table3<float>& table, const Piecewi
   return error;
 }
 
+LookUpError quadratic_gray_look_up_error(const QuadraticGrayTable<double>& table, const PiecewiseLinear& transfer,
+                                         const TableAxes& axes, Emission emission, const TableFormat& format) {
+  QuadraticGrayTable<double> in_format = table;
+  for (double& value : in_format.values) value = read_back(format, value);
+  const QuadraticGrayLookUp<double> look_up(in_format);
+  SecondOrderSlabs slabs(transfer, axes, emission);
+  Rules<double> rules;
+  ErrorsAtPlaces errors;
+  for (std::uint64_t i = 0; i < places_judged; ++i) {
+    const auto random = random_scalars<3>({.low = 0, .high = 1}, i);
+    const std::array ends{axes.low + random[0] * (axes.high - axes.low), axes.low + random[1] * (axes.high - axes.low)};
+    const double node = random[2] * static_cast<double>(table.radius.node_count() - 1);
+    const auto below = std::min(static_cast<std::size_t>(node), table.radius.node_count() - 2);
+    const double weight = node - static_cast<double>(below);
+    const double curvature = (1 - weight) * table.radius.curvature(below) + weight * table.radius.curvature(below + 1);
+    const double middle = rules.quadratic_gray_middle(ends[0], ends[1], curvature * table.gray, axes.length);
+    const Certified truth = slabs.certified({ends[0], middle, ends[1]});
+    errors.add(look_up.of_curvature(ends, curvature), truth.rgba(), truth.radius);
+  }
+  LookUpError error = errors.summary("bilinear, and along the curvatures");
+  error.rounding = largest_rounding(format, table.values);
+  return error;
+}
+
 namespace {
 
 /// A slab's weighted light in RGB and its opacity, by ball arithmetic: as the diffuse light of a surface whose cosine

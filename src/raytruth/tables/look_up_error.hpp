@@ -1,6 +1,7 @@
 #pragma once
 
 #include "raytruth/tables/look_up.hpp"
+#include "raytruth/tables/quadratic_gray_table.hpp"
 #include "raytruth/tables/table.hpp"
 #include "raytruth/tables/table3.hpp"
 #include "raytruth/tables/table_builder.hpp"
@@ -39,5 +40,10 @@ LookUpError weighted_look_up_error(const Table<double>& table, const TableConten
 /// The error of a table over three scalars, at random places.
 LookUpError second_order_look_up_error(const Table3<float>& table, const PiecewiseLinear& transfer,
                                        const TableAxes& axes, Emission emission, const TableFormat& format);
+
+/// The error of a table of the quadratic gray-value model, at random places within its curvatures. `axes`: those that
+/// were asked for, whose range is that of the gray values.
+LookUpError quadratic_gray_look_up_error(const QuadraticGrayTable<double>& table, const PiecewiseLinear& transfer,
+                                         const TableAxes& axes, Emission emission, const TableFormat& format);
 
 }  // namespace raytruth

@@ -7,6 +7,7 @@
 #include "raytruth/render/techniques/table_march.hpp"
 #include "raytruth/rules/rules.hpp"
 #include "raytruth/schemes/order2.hpp"
+#include "raytruth/tables/quadratic_gray_table.hpp"
 #include "raytruth/tables/second_order.hpp"
 #include "raytruth/tables/table_builders.hpp"
 
@@ -24,7 +25,7 @@ namespace raytruth {
 namespace {
 
 /// How many intervals from sample to sample are one slab of a table.
-std::size_t slab_intervals(const Scene& scene) { return scene.scheme == "order2" ? 2 : 1; }
+std::size_t slab_intervals(const Scene& scene) { return scene.scheme == "order1" ? 1 : 2; }
 
 /// The length of the slabs that a table holds.
 double table_length(const Scene& scene) { return static_cast<double>(slab_intervals(scene)) * scene.step.value_or(1); }
@@ -115,6 +116,21 @@ PixelRenderer second_order_renderer(const Field& field, const Scene& scene,
       field, scene, blocks, [](const PixelRay& /*pixel*/) { return 0; }, slab_of);
 }
 
+/// Shorter slabs are looked up by their three scalars, as if they had the table's length.
+template <class Field>
+PixelRenderer quadratic_gray_renderer(const Field& field, const Scene& scene,
+                                      const std::shared_ptr<const QuadraticGrayTable<float>>& table,
+                                      const std::shared_ptr<const OccupiedBlocks>& blocks) {
+  const auto slab_of = [&scene, table, look_up = QuadraticGrayLookUp<float>(*table)](
+                           int /*view*/, std::size_t first, std::size_t last, const Samples<double>& samples,
+                           double share) {
+    const std::array scalars{samples.values[first], middle_scalar(samples, first, last), samples.values[last]};
+    return corrected_slab(look_up(scalars, scene.table->filter == TableFilter::nearest), share);
+  };
+  return slab_renderer(
+      field, scene, blocks, [](const PixelRay& /*pixel*/) { return 0; }, slab_of);
+}
+
 template <class Field>
 PixelRenderer shaded_table_renderer(const Field& field, const Scene& scene,
                                     const std::shared_ptr<const ShadedTable>& table,
@@ -154,6 +170,18 @@ Table3<float> second_order_table_of(const Scene& scene) {
   return table;
 }
 
+const QuadraticGrayBuilder* quadratic_gray_builder(const Scene& scene) {
+  return find_named(catalogue::quadratic_gray_builders(), scene.table->builder);
+}
+
+QuadraticGrayTable<float> quadratic_gray_table_of(const Scene& scene) {
+  const QuadraticGrayBuilder& builder = *quadratic_gray_builder(scene);
+  QuadraticGrayTable<float> table =
+      builder.make(scene.transfer, table_axes(scene), scene.table->radius.value_or(builder.radius), scene.emission);
+  for (float& number : table.values) number = static_cast<float>(stored(scene.table->format, number));
+  return table;
+}
+
 Table<double> table_of(const Scene& scene) {
   const TableBuilder* const builder = find_named(catalogue::table_builders(), scene.table->builder);
   if (builder == nullptr)
@@ -178,6 +206,16 @@ PixelRendererFactory prepare_second_order(const PreparedScene& prepared) {
   return for_any_field(prepared, [&](const auto& field) {
     return [&field, &scene, table, blocks = asked_blocks(scene, field)] {
       return second_order_renderer(field, scene, table, blocks);
+    };
+  });
+}
+
+PixelRendererFactory prepare_quadratic_gray(const PreparedScene& prepared) {
+  const Scene& scene = prepared.scene;
+  const auto table = std::make_shared<const QuadraticGrayTable<float>>(quadratic_gray_table_of(scene));
+  return for_any_field(prepared, [&](const auto& field) {
+    return [&field, &scene, table, blocks = asked_blocks(scene, field)] {
+      return quadratic_gray_renderer(field, scene, table, blocks);
     };
   });
 }
@@ -215,6 +253,25 @@ PixelRendererFactory prepare_table(const PreparedScene& prepared) {
 }
 
 }  // namespace
+
+extern const Technique quadratic_gray_table_pixels;
+const Technique quadratic_gray_table_pixels{
+    .name = "quadratic_gray_table",
+    .summary = "slabs of parabolas from a table over two scalars and the curvature",
+    .applies =
+        [](const Scene& scene) {
+          return scene.table && scene.scheme != "order1" && quadratic_gray_builder(scene) != nullptr;
+        },
+    .refuse =
+        [](const PreparedScene& prepared) {
+          const Scene& scene = prepared.scene;
+          if (scene.shading) throw InputError("a quadratic table and shading; either is allowed");
+          if (scene.scheme != "order2" && scene.scheme != "quadratic_gray" && scene.scheme != "quadratic_gray_printed")
+            throw InputError(fmt::format(
+                "scheme {} with a quadratic table; order2, quadratic_gray and quadratic_gray_printed are allowed",
+                scene.scheme));
+        },
+    .prepare = prepare_quadratic_gray};
 
 extern const Technique second_order_table_pixels;
 const Technique second_order_table_pixels{

@@ -12,6 +12,7 @@
 namespace raytruth {
 
 extern const Technique cell_march_pixels;
+extern const Technique quadratic_gray_table_pixels;
 extern const Technique reference_pixels;
 extern const Technique scheme_pixels;
 extern const Technique second_order_table_pixels;
@@ -23,9 +24,16 @@ extern const Technique table_pixels;
 
 std::span<const Technique* const> techniques() {
   static constexpr std::array list{
-      &shaded_reference_pixels, &reference_pixels,   &second_order_table_pixels,
-      &shaded_table_pixels,     &table_march_pixels, &table_pixels,
-      &shaded_pixels,           &cell_march_pixels,  &scheme_pixels,
+      &shaded_reference_pixels,
+      &reference_pixels,
+      &quadratic_gray_table_pixels,
+      &second_order_table_pixels,
+      &shaded_table_pixels,
+      &table_march_pixels,
+      &table_pixels,
+      &shaded_pixels,
+      &cell_march_pixels,
+      &scheme_pixels,
   };
   return list;
 }

@@ -1,0 +1,91 @@
+#pragma once
+
+#include "raytruth/core/slab.hpp"
+#include "raytruth/rules/rules.hpp"
+#include "raytruth/transfer/emission.hpp"
+#include "raytruth/transfer/piecewise_linear.hpp"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace raytruth {
+
+/// The quadratic gray-value model of a slab (dissertation, section 5.3; rules/quadratic_gray.glsl has the formulas):
+/// the parabola through its front, middle and back scalar,
+///
+///     h(z) = orientation z^2 + slope z + front,  0 <= z <= scaled_length,  z = t / radius,
+///
+/// where radius = 1 / sqrt|a| and a is the parabola's second divided difference, per squared length. Where a = 0 the
+/// orientation is 0 and z is t.
+struct QuadraticGray {
+  double front = 0;
+  double back = 0;
+  double orientation = 0;    ///< sign of a
+  double radius = 1;         ///< R
+  double scaled_length = 1;  ///< D' = D / R
+  double slope = 0;          ///< b' = b R
+
+  static QuadraticGray of_curvature(double front, double back, double curvature, double length);
+  static QuadraticGray of_samples(double front, double middle, double back, double length) {
+    return of_curvature(front, back, Rules<double>{}.quadratic_gray_curvature(front, middle, back, length), length);
+  }
+
+  [[nodiscard]] double value(double z) const {
+    return Rules<double>{}.quadratic_gray_value(front, slope, orientation, z);
+  }
+  /// M, inside the slab or not; the front's scalar where the model is linear.
+  [[nodiscard]] double extremum() const { return Rules<double>{}.quadratic_gray_extremum(front, slope, orientation); }
+  /// Whether h turns inside the slab: -2 D' < b' < 0 (a > 0), 0 < b' < 2 D' (a < 0).
+  [[nodiscard]] bool turns() const { return orientation * slope < 0 && -orientation * slope < 2 * scaled_length; }
+};
+
+/// Where a slab passes from one interval of scalars to the next one.
+struct QuadraticGrayCut {
+  double z = 0;
+  std::size_t interval = 0;  ///< the one behind it: that below scalar i is interval i
+};
+
+/// The cuts of a slab at these ascending scalars, by the closed form of h's inverse branches; the front comes first,
+/// the back last, its interval without a meaning. `cuts` is overwritten and keeps its memory.
+void cut(const QuadraticGray& slab, const std::vector<double>& scalars, std::vector<QuadraticGrayCut>& cuts);
+
+/// Exact slabs of the model, in its own coordinate: z is cut where h meets the transfer function's points, by the
+/// closed form of its inverse branches. Between two cuts tau(h(z)) is a parabola in z: the optical depth is exact, the
+/// colour a Gauss-Legendre quadrature of 16 nodes whose parts are at most 2 deep. No singular weight 1 / (2 sqrt|s -
+/// M|) is left. Errors are those of rounding, about 1e-14. Equals the slab of `order2`, which the certified reference
+/// integrates.
+///
+/// For transfer functions that are linear in extinction. Holds buffers: one object per thread.
+class QuadraticGraySlabs {
+ public:
+  using vec4 = Rules<double>::vec4;
+
+  /// Throws InputError for a transfer function that is linear in opacity.
+  QuadraticGraySlabs(const PiecewiseLinear& transfer, Emission emission);
+
+  /// Light sent to the front, and opacity.
+  vec4 operator()(const QuadraticGray& slab);
+
+  /// omega = integral of tau(h(z)) over 0..D', so that the opacity is 1 - exp(-R omega).
+  double omega(const QuadraticGray& slab);
+
+ private:
+  /// Optics on an interval between two points: value + slope (s - from), for each of q (three) and tau.
+  struct Interval {
+    double from = 0;
+    std::array<double, 3> color{};
+    std::array<double, 3> color_slope{};
+    double extinction = 0;
+    double extinction_slope = 0;
+  };
+
+  [[nodiscard]] double depth(const QuadraticGray& slab, const Interval& interval, double from, double to) const;
+
+  std::vector<double> scalars_;      ///< where intervals meet
+  std::vector<Interval> intervals_;  ///< one before the first point, one behind the last
+  std::vector<QuadraticGrayCut> cuts_;
+  Emission emission_;
+};
+
+}  // namespace raytruth
