@@ -18,6 +18,8 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -32,8 +34,26 @@ struct Options {
   std::int64_t table_size = 0;
 };
 
-Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
+/// The names of the schemes that cut, and where.
+constexpr std::array splits{std::pair{CubicSplitNone::info.name, CubicSplit::none},
+                            std::pair{CubicSplitInflection::info.name, CubicSplit::inflection},
+                            std::pair{CubicSplitExtrema::info.name, CubicSplit::extrema},
+                            std::pair{CubicSplitMiddle::info.name, CubicSplit::middle},
+                            std::pair{CubicSplitFewest::info.name, CubicSplit::fewest}};
+
+/// The scheme of this name; the list's end if it cuts nothing.
+auto split_named(std::string_view name) {
+  return std::find_if(splits.begin(), splits.end(), [name](const auto& row) { return row.first == name; });
+}
+
+Options read_options(const Experiment& experiment, const JsonReader& json) {
   json.only({"kind", "signals", "steps", "mean_errors", "table_size"});
+  for (const std::string& scheme : experiment.schemes)
+    if (split_named(scheme) == splits.end())
+      json.refuse("the scheme " + scheme, "schemes whose names begin with cubic_split_");
+  if (experiment.schemes.front() != CubicSplitNone::info.name)
+    json.refuse("the first scheme " + experiment.schemes.front(),
+                "cubic_split_none, which the others are compared with");
   Options options;
   const std::vector<std::string_view> names(field_kind_names.begin(), field_kind_names.end());
   for (const JsonReader& item : json.at("signals").items()) {
@@ -50,31 +70,20 @@ Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
 
 /// A way to cut.
 struct Cut {
+  std::string scheme;
   CubicSplit split;
   std::optional<double> mean_error = {};  ///< of fewest; none: the scheme's own
 };
 
-std::string_view name_of(CubicSplit split) {
-  switch (split) {
-    case CubicSplit::none:
-      return CubicSplitNone::info.name;
-    case CubicSplit::inflection:
-      return CubicSplitInflection::info.name;
-    case CubicSplit::extrema:
-      return CubicSplitExtrema::info.name;
-    case CubicSplit::middle:
-      return CubicSplitMiddle::info.name;
-    case CubicSplit::fewest:
-      return CubicSplitFewest::info.name;
-  }
-  return {};
-}
-
 /// All ways, the one that the others are compared with first. A slab's own range is asked of cubics alone.
-std::vector<Cut> cuts_of(const Options& options, bool are_cubics) {
-  std::vector<Cut> cuts{{CubicSplit::none}, {CubicSplit::inflection}, {CubicSplit::extrema}, {CubicSplit::middle}};
-  if (are_cubics) cuts.push_back({CubicSplit::fewest});
-  for (const double mean_error : options.mean_errors) cuts.push_back({CubicSplit::fewest, mean_error});
+std::vector<Cut> cuts_of(const Experiment& experiment, const Options& options, bool are_cubics) {
+  std::vector<Cut> cuts;
+  for (const std::string& scheme : experiment.schemes) {
+    const CubicSplit split = split_named(scheme)->second;
+    if (split != CubicSplit::fewest || are_cubics) cuts.push_back({scheme, split});
+    if (split != CubicSplit::fewest) continue;
+    for (const double mean_error : options.mean_errors) cuts.push_back({scheme, split, mean_error});
+  }
   return cuts;
 }
 
@@ -290,11 +299,20 @@ double parts_ratio(const Record& record) {
 }
 
 std::optional<double> xi_gain(const Record& record) { return ratio(record.none.findings.xi, record.own.findings.xi); }
-std::optional<double> opacity_gain(const Record& record) {
-  return ratio(rms_opacity(record.none.errors), rms_opacity(record.own.errors));
+/// The gain in a root mean square of errors; none where one of the two is within its radius.
+std::optional<double> gain_in(double (*rms)(const RayErrors&), const Record& record) {
+  const double none = rms(record.none.errors);
+  const double own = rms(record.own.errors);
+  if (none <= record.none.errors.radius || own <= record.own.errors.radius) return std::nullopt;
+  return none / own;
 }
-std::optional<double> color_gain(const Record& record) {
-  return ratio(rms_color(record.none.errors), rms_color(record.own.errors));
+
+std::optional<double> opacity_gain(const Record& record) { return gain_in(rms_opacity, record); }
+std::optional<double> color_gain(const Record& record) { return gain_in(rms_color, record); }
+
+/// A gain over look-ups.
+std::optional<double> over(std::optional<double> gain, double lookups) {
+  return gain ? std::optional(*gain / lookups) : std::nullopt;
 }
 
 /// How many lengths of parts a table has to hold; none: any length.
@@ -352,7 +370,7 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
           {.name = "xi_gain", .description = "summed xi of one parabola to a slab over summed xi", .cell = xi_gain},
           {.name = "xi_gain_per_lookup",
            .description = "the same over look-ups of a slab",
-           .cell = [](const Record& record) { return ratio(xi_gain(record).value_or(0), parts_ratio(record)); }},
+           .cell = [](const Record& record) { return over(xi_gain(record), parts_ratio(record)); }},
           {.name = "uncut_share",
            .description = "share of the summed xi of one parabola that lies in slabs that are not cut",
            .cell = [](const Record& record) { return ratio(record.own.findings.xi_uncut, record.none.findings.xi); }},
@@ -380,15 +398,16 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
            .radius = "radius",
            .cell = [](const Record& record) { return rms_color(record.own.errors); }},
           {.name = "opacity_gain",
-           .description = "opacity_rms of one parabola to a slab over opacity_rms",
+           .description =
+               "opacity_rms of one parabola to a slab over opacity_rms; none where one of them is within its radius",
            .cell = opacity_gain},
           {.name = "color_gain", .description = "the same of color_rms", .cell = color_gain},
           {.name = "opacity_gain_per_lookup",
            .description = "opacity_gain over look-ups as multiples of those of one parabola to a slab",
-           .cell = [](const Record& record) { return ratio(opacity_gain(record).value_or(0), lookups_ratio(record)); }},
+           .cell = [](const Record& record) { return over(opacity_gain(record), lookups_ratio(record)); }},
           {.name = "color_gain_per_lookup",
            .description = "the same of color_gain",
-           .cell = [](const Record& record) { return ratio(color_gain(record).value_or(0), lookups_ratio(record)); }},
+           .cell = [](const Record& record) { return over(color_gain(record), lookups_ratio(record)); }},
           {.name = "part_lengths",
            .description = "how many lengths of parts a table has to hold; none: any, an axis of its own",
            .cell = part_lengths},
@@ -415,7 +434,7 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
     const bool are_cubics = kind == FieldKind::trilinear;
     std::vector<std::optional<double>> steps{std::nullopt};
     if (are_cubics) steps.insert(steps.end(), options.steps.begin(), options.steps.end());
-    const std::vector<Cut> cuts = cuts_of(options, are_cubics);
+    const std::vector<Cut> cuts = cuts_of(experiment, options, are_cubics);
     for (const auto& step : steps)
       for (const NamedTransfer& transfer : experiment.transfers) {
         const Trials trials = std::visit(
@@ -428,7 +447,7 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
           records.push_back({.transfer = {transfer.name, experiment.emission},
                              .keys = {.signal = std::string(field_kind_names[static_cast<std::size_t>(kind)]),
                                       .step = step,
-                                      .split = std::string(name_of(cuts[cut].split)),
+                                      .split = cuts[cut].scheme,
                                       .mean_error = cuts[cut].mean_error},
                              .rays = ray_counts(experiment, studied),
                              .studied = static_cast<std::int64_t>(studied),
@@ -446,7 +465,7 @@ extern const Measure cubic_splitting_measure;
 const Measure cubic_splitting_measure{MeasureDefinition<Options, Record>{
     .name = "cubic_splitting",
     .summary = "what is gained where a slab's cubic is cut into parts, each replaced by a parabola",
-    .needs = {.transfers = true},
+    .needs = {.signal_schemes = true, .transfers = true},
     .read = read_options,
     .columns = columns,
     .of_field = records_of_field}};
