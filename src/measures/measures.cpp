@@ -10,6 +10,7 @@ extern const Measure cone_lobe_measure;
 extern const Measure conformance_measure;
 extern const Measure continuity_measure;
 extern const Measure costs_measure;
+extern const Measure cubic_splitting_measure;
 extern const Measure distance_axis_measure;
 extern const Measure error_waterfall_measure;
 extern const Measure eta_measure;
@@ -63,6 +64,7 @@ std::span<const Measure* const> measures() {
       &cell_cubic_measure,
       &turning_points_measure,
       &quadratic_gray_fit_measure,
+      &cubic_splitting_measure,
       &orders_measure,
       &virtual_samples_measure,
       &frequency_response_measure,

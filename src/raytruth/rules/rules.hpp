@@ -59,6 +59,7 @@ struct Rules {
 #include "raytruth/rules/quadratic_gray.glsl"
 #include "raytruth/rules/virtual_catmull_rom.glsl"
 #include "raytruth/rules/virtual_sample.glsl"
+#include "raytruth/rules/cubic_split.glsl"
 #include "raytruth/rules/absorption.glsl"
 #include "raytruth/rules/over.glsl"
 #include "raytruth/rules/homogeneous.glsl"

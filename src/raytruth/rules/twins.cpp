@@ -179,6 +179,29 @@ Twin lighting_twin(Twin twin, std::size_t moment_count) {
   return twin;
 }
 
+/// The largest magnitude of the cubic's coefficients, which are the arguments.
+double largest_of(std::span<const float> cubic) {
+  double largest = 0;
+  for (const float b : cubic) largest = std::max(largest, std::abs(static_cast<double>(b)));
+  return largest;
+}
+
+/// How far a unit in the last place of the cubic's coefficients, which are the arguments, moves a place where a
+/// multiple of them is zero whose slope is `slope`, in such units; without bound where that slope vanishes.
+double place_summand(std::span<const float> cubic, double slope) {
+  constexpr double unbounded = 1e30;
+  const double largest = largest_of(cubic);
+  return largest < unbounded * std::abs(slope) && largest > 1 / unbounded ? largest / std::abs(slope) : unbounded;
+}
+
+/// The first differences of the cubic's coefficients, which are the arguments.
+std::array<double, 3> slopes_of(std::span<const float> cubic) {
+  const auto difference = [cubic](std::size_t i) {
+    return static_cast<double>(cubic[i + 1]) - static_cast<double>(cubic[i]);
+  };
+  return {difference(0), difference(1), difference(2)};
+}
+
 std::vector<Twin> make_twins() {
   using enum Domain;
   constexpr Twin::Bounds exact{.gl = 0, .rounding = 0};
@@ -189,6 +212,24 @@ std::vector<Twin> make_twins() {
   const std::vector three(3, signal);
   const std::vector four(4, signal);
   const std::vector three_split{signal, signal, signal, split};
+  Twin inflection_twin = twin(
+      "cubic_split_inflection", [](auto r) { return &decltype(r)::cubic_split_inflection; }, {signals}, sum);
+  inflection_twin.summand = [](std::span<const float> cubic, std::size_t) {
+    const auto [front, middle, back] = slopes_of(cubic);
+    return place_summand(cubic, (middle - front) - (back - middle));
+  };
+  // Two extrema that are about to meet, and one that is about to leave for infinity, are where rounding puts them.
+  Twin extrema_twin = twin(
+      "cubic_split_extrema", [](auto r) { return &decltype(r)::cubic_split_extrema; }, {signals}, sum);
+  extrema_twin.summand = [](std::span<const float> cubic, std::size_t) {
+    constexpr double noise = 16 * epsilon;
+    const auto [front, middle, back] = slopes_of(cubic);
+    const double largest = std::max({std::abs(front), std::abs(middle), std::abs(back)});
+    const double discriminant = std::abs(middle * middle - front * back);
+    const double bend = (back - middle) - (middle - front);
+    const bool is_noise = discriminant <= noise * largest * largest_of(cubic);
+    return place_summand(cubic, is_noise ? 0 : std::min(std::sqrt(discriminant), std::abs(bend)));
+  };
   Twin normal_curve_twin = twin(
       "normal_curve", [](auto r) { return &decltype(r)::normal_curve; }, {projection, projection, unit, unit}, sum);
   normal_curve_twin.summand = [](std::span<const float> numbers, std::size_t) { return largest_multiple(numbers); };
@@ -299,6 +340,18 @@ std::vector<Twin> make_twins() {
       sum_twin(
           "virtual_texel", [](auto r) { return &decltype(r)::virtual_texel; },
           {signals, signals, signals, signals, unit}, sum),
+      sum_twin(
+          "cubic_split_cubic", [](auto r) { return &decltype(r)::cubic_split_cubic; }, four, sum),
+      sum_twin(
+          "cubic_split_value", [](auto r) { return &decltype(r)::cubic_split_value; }, {signals, unit}, sum),
+      sum_twin(
+          "cubic_split_parabola", [](auto r) { return &decltype(r)::cubic_split_parabola; }, three, sum),
+      sum_twin(
+          "cubic_split_part", [](auto r) { return &decltype(r)::cubic_split_part; }, {signals, unit, unit}, sum),
+      inflection_twin,
+      extrema_twin,
+      sum_twin(
+          "cubic_split_mean_error", [](auto r) { return &decltype(r)::cubic_split_mean_error; }, {signals}, sum),
       twin(
           "absorption", [](auto r) { return &decltype(r)::absorption; }, {depth, is_linear}, absorbing),
       twin(

@@ -36,11 +36,18 @@ concept GivesParts = requires(const Chain<3>& signal, const Samples<double>& sam
   { S::interval(signal, samples, k, part) } -> std::same_as<Bernstein<3>>;
 };
 
-/// A scheme turns samples into an approximate signal: `interval` gives the cubic between sample k and sample k + 1, or
-/// on one of its `parts_per_interval` parts, if they are more than one. The signal is passed for schemes that fetch
-/// more of it; they say so in `extra_fetches_per_interval`.
 template <class S>
-concept Scheme = std::convertible_to<decltype(S::info), SchemeInfo> &&(GivesIntervals<S> || GivesParts<S>);
+concept GivesSlabs = requires(const Chain<3>& signal, const Samples<double>& samples, std::size_t k, Chain<3>& chain) {
+  S::append_slab(signal, samples, k, chain);
+};
+
+/// A scheme turns samples into an approximate signal: `interval` gives the cubic between sample k and sample k + 1, or
+/// on one of its `parts_per_interval` parts, if they are more than one; or `append_slab` appends the pieces of the slab
+/// that begins at sample k, which are as many as it needs, and each a look-up. The signal is passed for schemes that
+/// fetch more of it; they say so in `extra_fetches_per_interval`.
+template <class S>
+concept Scheme = std::convertible_to<decltype(S::info), SchemeInfo> &&
+    (GivesIntervals<S> || GivesParts<S> || GivesSlabs<S>);
 
 /// Why the scheme cannot use these samples; empty if it can.
 template <Scheme S, class Real>
@@ -51,7 +58,8 @@ std::string_view refusal(const Samples<Real>& samples) {
     return {};
 }
 
-/// How many intervals, from sample k on, are one slab: one look-up in a table of pre-integrated slabs.
+/// How many intervals, from sample k on, are one slab: one look-up in a table of pre-integrated slabs, but for schemes
+/// that cut it into parts of their own.
 template <Scheme S, class Real>
 std::size_t slab_intervals(const Samples<Real>& samples, std::size_t k) {
   if constexpr (requires { S::slab_intervals(samples, k); })
@@ -67,8 +75,13 @@ void approximate(const Chain<Degree, Real>& signal, const Samples<Real>& samples
   approximation.pieces.clear();
   approximation.end = signal.end;
   constexpr int parts = S::info.parts_per_interval;
-  for (std::size_t k = 0; k < samples.interval_count(); ++k)
-    if constexpr (parts == 1) {
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < samples.interval_count(); k = next) {
+    next = k + 1;
+    if constexpr (GivesSlabs<S>) {
+      next = k + slab_intervals<S>(samples, k);
+      S::append_slab(signal, samples, k, approximation);
+    } else if constexpr (parts == 1) {
       approximation.pieces.push_back({samples.positions[k], samples.length_of(k), S::interval(signal, samples, k)});
     } else {
       const Real length = samples.length_of(k) / Real(parts);
@@ -76,6 +89,7 @@ void approximate(const Chain<Degree, Real>& signal, const Samples<Real>& samples
         approximation.pieces.push_back({samples.positions[k] + Abscissa<Real>(Real(part) * length), length,
                                         S::interval(signal, samples, k, part)});
     }
+  }
 }
 
 /// How often the scheme reads the signal: the samples, and what it fetches besides.

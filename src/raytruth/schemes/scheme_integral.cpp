@@ -94,6 +94,10 @@ SchemeIntegral::Approximation SchemeIntegral::approximate_by(std::string_view na
   catalogue::visit_scheme(name, [&]<class S>() {
     approximate<S>(signal, samples, approximation_);
     result.fetches = fetches<S>(samples);
+    if constexpr (GivesSlabs<S>) {
+      result.slabs = one_slab_per_piece(approximation_, 0).slabs;
+      return;
+    }
     constexpr std::size_t parts = S::info.parts_per_interval;
     for (std::size_t k = 0; k < samples.interval_count(); k += slab_intervals<S>(samples, k))
       for (std::size_t part = 0; part < parts; ++part) result.slabs.push_back(k * parts + part);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "raytruth/schemes/cubic_split.hpp"
 #include "raytruth/schemes/order0.hpp"
 #include "raytruth/schemes/order1.hpp"
 #include "raytruth/schemes/order2.hpp"
@@ -18,7 +19,8 @@ namespace raytruth::catalogue {
 /// From samples to an approximate signal, in the order in which tables and plots show them.
 using Schemes =
     std::tuple<Order0Left, Order0Right, Order0Mid, Order1, Order2, Order3, VirtualCatmullRom, VirtualCatmullRom1,
-               VirtualCatmullRom3, VirtualCatmullRom7, VirtualLinear1, VirtualLinear3, VirtualLinear7>;
+               VirtualCatmullRom3, VirtualCatmullRom7, VirtualLinear1, VirtualLinear3, VirtualLinear7, CubicSplitNone,
+               CubicSplitInflection, CubicSplitExtrema, CubicSplitMiddle, CubicSplitFewest>;
 
 /// Calls visit<S>() for every scheme, in order.
 template <class Visit>

@@ -223,6 +223,8 @@ TEST(EveryIntegralScheme, CountsWhatItReadsAndDoes) {
   EXPECT_EQ(counts("order2_iterations_64"), (Counts{11, 5, 5}));
   EXPECT_EQ(counts("order3"), (Counts{11, 4, 4}));  // three triples and one interval
   EXPECT_EQ(counts("virtual_catmull_rom_3"), (Counts{11, 40, 40}));
+  EXPECT_EQ(counts("cubic_split_none"), (Counts{11, 4, 4}));
+  EXPECT_EQ(counts("cubic_split_middle"), (Counts{11, 8, 8}));
   EXPECT_EQ(counts("cell_adaptive"), (Counts{7, 2, 2}));
   EXPECT_EQ(counts("cell_cubic"), (Counts{16, 2, 2}));
 }
@@ -266,7 +268,8 @@ TEST(EveryIntegralScheme, RefusesSamplesThatItCannotUse) {
   SchemeIntegral integrate(smooth_transfer(), Emission::plain);
   for (const IntegralScheme& scheme : catalogue::integral_schemes()) {
     SCOPED_TRACE(scheme.name);
-    const bool needs_equal_steps = scheme.signal == "order3" || scheme.signal.starts_with("virtual");
+    const bool needs_equal_steps =
+        scheme.signal == "order3" || scheme.signal.starts_with("virtual") || scheme.signal.starts_with("cubic_split");
     EXPECT_EQ(integrate(scheme, signal, samples).refusal.empty(), !needs_equal_steps);
     EXPECT_EQ(integrate.budget(scheme, signal, samples, exact(signal)).outcome.refusal.empty(), !needs_equal_steps);
   }
