@@ -4,6 +4,7 @@
 #include "raytruth/schemes/radius_axis.hpp"
 #include "raytruth/tables/second_order.hpp"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -78,6 +79,7 @@ struct Record {
   double mean = 0;
   double root_mean_square = 0;
   double radius = 0;
+  double equal_steps_mean = 0;  ///< of the axis with the most equal steps
 };
 
 constexpr std::array<std::string_view, 3> look_up_names{"linear in a", "linear in R", "nearest"};
@@ -195,6 +197,7 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
                         random_numbers(experiment.seed, RandomStream::points, i, static_cast<std::uint32_t>(range)));
         });
         const auto count = static_cast<double>(all.size());
+        const std::size_t first = records.size();
         for (std::size_t i = 0; i < nodes.size(); ++i) {
           Record record{
               .shape = shape, .optical_depth = depth, .axis = options.axes[i], .range = curvature_ranges[range].name};
@@ -207,6 +210,13 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
           record.root_mean_square = std::sqrt(record.root_mean_square);
           records.push_back(record);
         }
+        const Record* most = nullptr;
+        for (std::size_t i = first; i < records.size(); ++i)
+          if (records[i].axis.steps == RadiusSteps::equal_steps &&
+              (most == nullptr || records[i].axis.count > most->axis.count))
+            most = &records[i];
+        const double of_most = most->mean;
+        for (std::size_t i = first; i < records.size(); ++i) records[i].equal_steps_mean = of_most;
       }
     }
   return records;

@@ -28,13 +28,12 @@ Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
   return options;
 }
 
-/// Rules on one gray value: the integral of tau(s) / (2 sqrt(s - M)) over [i, i + 1].
+/// A rule of three evaluations on one gray value: the integral of tau(s) / (2 sqrt(s - M)) over [i, i + 1].
 struct LevelError {
   double offset = 0;
   std::string_view extinction;
-  double simpson = 0;
-  double substituted_simpson = 0;
-  double substituted_gauss = 0;
+  std::string_view rule;
+  double relative = 0;
 };
 
 /// An extinction on [i, i + 1], x = s - i.
@@ -52,22 +51,21 @@ constexpr std::array level_extinctions{
     LevelExtinction{"falling", [](double x) { return 1 - x; },
                     [](double y, double offset) { return y * (offset + 1 - y * y / 3); }}};
 
-LevelError level_error(const LevelExtinction& extinction, double offset) {
+void add_level_errors(const LevelExtinction& extinction, double offset, std::vector<LevelError>& errors) {
   const double first = std::sqrt(offset);
   const double last = std::sqrt(offset + 1);
   const double exact = extinction.integral(last, offset) - extinction.integral(first, offset);
   const auto printed = [&](double x) { return extinction.value(x) / (2 * std::sqrt(offset + x)); };
   const auto substituted = [&](double y) { return extinction.value(y * y - offset); };
-  const double simpson = (printed(0) + 4 * printed(0.5) + printed(1)) / 6;
-  const double simpson_in_y =
-      (last - first) / 6 * (substituted(first) + 4 * substituted(0.5 * (first + last)) + substituted(last));
-  // Three nodes, as many evaluations as Simpson's rule.
+  const auto add = [&](std::string_view rule, double found) {
+    errors.push_back({offset, extinction.name, rule, std::abs(found - exact) / exact});
+  };
+  add("Simpson in s", (printed(0) + 4 * printed(0.5) + printed(1)) / 6);
   const double middle = 0.5 * (first + last);
+  add("Simpson in y", (last - first) / 6 * (substituted(first) + 4 * substituted(middle) + substituted(last)));
   const double node = 0.5 * (last - first) * std::sqrt(0.6);
-  const double gauss_in_y =
-      (last - first) / 18 * (5 * substituted(middle - node) + 8 * substituted(middle) + 5 * substituted(middle + node));
-  const auto relative = [exact](double found) { return std::abs(found - exact) / exact; };
-  return {offset, extinction.name, relative(simpson), relative(simpson_in_y), relative(gauss_in_y)};
+  add("Gauss in y", (last - first) / 18 *
+                        (5 * substituted(middle - node) + 8 * substituted(middle) + 5 * substituted(middle + node)));
 }
 
 /// Opacities of slabs of constant extinction, all S_f <= S_b, by how h runs and by what of the print is taken.
@@ -172,20 +170,20 @@ const Part* part_of(const Record& record) {
 }
 
 Columns<LevelError> level_columns() {
-  return {{.name = "offset", .description = "i - M, gray values", .is_key = true, .cell = &LevelError::offset},
-          {.name = "extinction",
-           .description = "tau on [i, i + 1]: 1, s - i, or i + 1 - s",
-           .is_key = true,
-           .cell = &LevelError::extinction},
-          {.name = "simpson_error",
-           .description = "relative error of Simpson's rule on tau / (2 sqrt(s - M)), against the closed form",
-           .cell = &LevelError::simpson},
-          {.name = "substituted_simpson_error",
-           .description = "the same in y = sqrt(s - M), integrand tau(M + y^2)",
-           .cell = &LevelError::substituted_simpson},
-          {.name = "substituted_gauss_error",
-           .description = "three nodes of Gauss in y, as many evaluations",
-           .cell = &LevelError::substituted_gauss}};
+  return {
+      {.name = "offset", .description = "i - M, gray values", .is_key = true, .cell = &LevelError::offset},
+      {.name = "extinction",
+       .description = "tau on [i, i + 1]: 1, s - i, or i + 1 - s",
+       .is_key = true,
+       .cell = &LevelError::extinction},
+      {.name = "rule",
+       .description = "three evaluations: of tau / (2 sqrt(s - M)) in s, as printed; of tau(M + y^2) in y = sqrt(s - "
+                      "M)",
+       .is_key = true,
+       .cell = &LevelError::rule},
+      {.name = "relative_error",
+       .description = "of the integral, against its closed form",
+       .cell = &LevelError::relative}};
 }
 
 Columns<OmegaError> omega_columns() {
@@ -226,7 +224,11 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
 std::vector<Record> records(const Experiment& /*experiment*/, const Options& options) {
   std::vector<Record> records;
   for (const LevelExtinction& extinction : level_extinctions)
-    for (const double offset : options.offsets) records.push_back({level_error(extinction, offset)});
+    for (const double offset : options.offsets) {
+      std::vector<LevelError> errors;
+      add_level_errors(extinction, offset, errors);
+      for (const LevelError& error : errors) records.push_back({error});
+    }
   for (const OmegaError& error : omega_errors(options.extinction)) records.push_back({error});
   const RadiusAxis axis = printed_radius_axis();
   for (std::size_t i = axis.count; i-- > 0;) records.push_back({lost_share(1 / axis.radius(i))});

@@ -2,6 +2,7 @@
 
 #include "raytruth/core/error.hpp"
 
+#include <fmt/format.h>
 #include <boost/math/quadrature/gauss.hpp>
 
 #include <algorithm>
@@ -87,60 +88,72 @@ void cut(const QuadraticGray& slab, const std::vector<double>& scalars, std::vec
   cuts.push_back({end, 0});
 }
 
-QuadraticGraySlabs::QuadraticGraySlabs(const PiecewiseLinear& transfer, Emission emission) : emission_(emission) {
+TransferIntervals::TransferIntervals(const PiecewiseLinear& transfer) {
   if (transfer.is_linear_in_opacity())
     throw InputError(
         "the quadratic gray-value model with a transfer function that is linear in opacity; one that is linear in "
         "extinction is allowed, or the scheme order2, whose slabs are the same");
   const auto& points = transfer.points();
   for (const TransferPoint& point : points)
-    if (scalars_.empty() || scalars_.back() != point.s) scalars_.push_back(point.s);
-  for (std::size_t i = 0; i <= scalars_.size(); ++i) {
-    const bool is_between = i > 0 && i < scalars_.size();
-    const double from = scalars_[i > 0 ? i - 1 : 0];
+    if (scalars.empty() || scalars.back() != point.s) scalars.push_back(point.s);
+  for (std::size_t i = 0; i <= scalars.size(); ++i) {
+    const bool is_between = i > 0 && i < scalars.size();
+    const double from = scalars[i > 0 ? i - 1 : 0];
     const Optics low = i > 0 ? transfer.at(from) : transfer.before(from);
     Interval interval{.from = from, .extinction = low.extinction};
     for (std::size_t c = 0; c < 3; ++c) interval.color[c] = low.color[static_cast<Eigen::Index>(c)];
     if (is_between) {
-      const Optics high = transfer.before(scalars_[i]);
-      const double width = scalars_[i] - from;
+      const Optics high = transfer.before(scalars[i]);
+      const double width = scalars[i] - from;
       interval.extinction_slope = (high.extinction - low.extinction) / width;
       for (std::size_t c = 0; c < 3; ++c)
         interval.color_slope[c] = (high.color[static_cast<Eigen::Index>(c)] - interval.color[c]) / width;
     }
-    intervals_.push_back(interval);
+    intervals.push_back(interval);
   }
 }
 
-double QuadraticGraySlabs::depth(const QuadraticGray& slab, const Interval& interval, double from, double to) const {
-  const auto extinction = [&](double z) {
-    return interval.extinction + interval.extinction_slope * (slab.value(z) - interval.from);
-  };
-  // Simpson's rule, exact for a parabola.
-  return (to - from) / 6 * (extinction(from) + 4 * extinction(0.5 * (from + to)) + extinction(to));
+QuadraticGraySlabs::QuadraticGraySlabs(const PiecewiseLinear& transfer, Emission emission)
+    : transfer_(transfer), emission_(emission) {}
+
+namespace {
+
+using Interval = TransferIntervals::Interval;
+
+double extinction_at(const QuadraticGray& slab, const Interval& interval, double z) {
+  return interval.extinction + interval.extinction_slope * (slab.value(z) - interval.from);
 }
 
+/// The integral of tau(h(z)) on an interval: Simpson's rule, exact for a parabola.
+double depth(const QuadraticGray& slab, const Interval& interval, double from, double to) {
+  return (to - from) / 6 *
+         (extinction_at(slab, interval, from) + 4 * extinction_at(slab, interval, 0.5 * (from + to)) +
+          extinction_at(slab, interval, to));
+}
+
+}  // namespace
+
 double QuadraticGraySlabs::omega(const QuadraticGray& slab) {
-  cut(slab, scalars_, cuts_);
+  cut(slab, transfer_.scalars, cuts_);
   double sum = 0;
   for (std::size_t i = 0; i + 1 < cuts_.size(); ++i)
-    sum += depth(slab, intervals_[cuts_[i].interval], cuts_[i].z, cuts_[i + 1].z);
+    sum += depth(slab, transfer_.intervals[cuts_[i].interval], cuts_[i].z, cuts_[i + 1].z);
   return std::max(sum, 0.0);
 }
 
-QuadraticGraySlabs::vec4 QuadraticGraySlabs::operator()(const QuadraticGray& slab) {
+template <class WeightAt>
+QuadraticGraySlabs::vec4 QuadraticGraySlabs::integrate(const QuadraticGray& slab, const WeightAt& weight_at) {
   static const Rule rule;
-  cut(slab, scalars_, cuts_);
+  cut(slab, transfer_.scalars, cuts_);
   vec4 result = vec4::Zero();
   double in_front = 0;  // the optical depth so far
   for (std::size_t i = 0; i + 1 < cuts_.size(); ++i) {
-    const Interval& interval = intervals_[cuts_[i].interval];
+    const Interval& interval = transfer_.intervals[cuts_[i].interval];
     const double from = cuts_[i].z;
     const double width = cuts_[i + 1].z - from;
     const double whole = slab.radius * depth(slab, interval, from, from + width);
-    const double steepest = std::max(
-        std::abs(interval.extinction + interval.extinction_slope * (slab.value(from) - interval.from)),
-        std::abs(interval.extinction + interval.extinction_slope * (slab.value(from + width) - interval.from)));
+    const double steepest =
+        std::max(std::abs(extinction_at(slab, interval, from)), std::abs(extinction_at(slab, interval, from + width)));
     const double parts = std::ceil(std::max(1.0, slab.radius * steepest * width / deepest_part));
     double before = 0;
     for (double part = 0; part < parts && std::exp(-in_front - before) > dark; ++part) {
@@ -149,10 +162,8 @@ QuadraticGraySlabs::vec4 QuadraticGraySlabs::operator()(const QuadraticGray& sla
       for (std::size_t k = 0; k < node_count; ++k) {
         const double z = start + length * rule.nodes[k];
         const double above = slab.value(z) - interval.from;
-        const double extinction = interval.extinction + interval.extinction_slope * above;
         const double seen = std::exp(-(in_front + before + slab.radius * depth(slab, interval, start, z)));
-        const double weight =
-            slab.radius * length * rule.weights[k] * seen * (emission_ == Emission::associated ? extinction : 1.0);
+        const double weight = slab.radius * length * rule.weights[k] * seen * weight_at(interval, z);
         for (std::size_t c = 0; c < 3; ++c)
           result[static_cast<Eigen::Index>(c)] += weight * (interval.color[c] + interval.color_slope[c] * above);
       }
@@ -162,6 +173,40 @@ QuadraticGraySlabs::vec4 QuadraticGraySlabs::operator()(const QuadraticGray& sla
   }
   result[3] = -std::expm1(-std::max(in_front, 0.0));
   return result;
+}
+
+QuadraticGraySlabs::vec4 QuadraticGraySlabs::operator()(const QuadraticGray& slab) {
+  if (emission_ == Emission::plain)
+    return integrate(slab, [](const Interval& /*interval*/, double /*z*/) { return 1.0; });
+  return integrate(slab, [&slab](const Interval& interval, double z) { return extinction_at(slab, interval, z); });
+}
+
+QuadraticGraySlabs::vec4 QuadraticGraySlabs::operator()(const QuadraticGray& slab, const GradientLight& light) {
+  cut(slab, transfer_.scalars, cuts_);
+  for (std::size_t i = 0; i + 2 < cuts_.size(); ++i) {
+    const std::size_t lower = std::min(cuts_[i].interval, cuts_[i + 1].interval);
+    if (cuts_[i].interval == cuts_[i + 1].interval) continue;
+    const Interval& below = transfer_.intervals[lower];
+    const Interval& above = transfer_.intervals[lower + 1];
+    const double from_below = below.extinction + below.extinction_slope * (above.from - below.from);
+    if (std::abs(from_below - above.extinction) > 1e-12 * std::max(from_below, above.extinction))
+      throw InputError(fmt::format(
+          "found a jump of the extinction at scalar {} with light by its gradient; continuous extinctions are allowed",
+          above.from));
+  }
+  return integrate(slab, [&light](const Interval& interval, double z) {
+    const double slope = interval.extinction_slope;
+    const double sign = slope > 0 ? 1 : slope < 0 ? -1 : 0;
+    const double strength = light.is_corrected ? sign : std::pow(slope, light.power);
+    if (std::isnan(strength))
+      throw InputError(fmt::format(
+          "found a falling extinction and the exponent {}, a power of a negative number; whole exponents are allowed",
+          light.power));
+    double weight = strength * std::pow(z, light.z_power);
+    const double highlight = light.is_corrected ? std::max(1 + light.v * z, 0.0) : 1 + light.v * z;
+    if (light.v != 0) weight *= std::pow(highlight, light.power);
+    return weight;
+  });
 }
 
 }  // namespace raytruth

@@ -50,6 +50,36 @@ struct QuadraticGrayCut {
 /// the back last, its interval without a meaning. `cuts` is overwritten and keeps its memory.
 void cut(const QuadraticGray& slab, const std::vector<double>& scalars, std::vector<QuadraticGrayCut>& cuts);
 
+/// A transfer function that is linear in extinction, by the intervals between its points: one before the first point,
+/// one behind the last.
+struct TransferIntervals {
+  /// Optics there: value + slope (s - from).
+  struct Interval {
+    double from = 0;
+    std::array<double, 3> color{};
+    std::array<double, 3> color_slope{};
+    double extinction = 0;
+    double extinction_slope = 0;
+  };
+
+  /// Throws InputError for a transfer function that is linear in opacity.
+  explicit TransferIntervals(const PiecewiseLinear& transfer);
+
+  std::vector<double> scalars = {};  ///< where intervals meet
+  std::vector<Interval> intervals = {};
+};
+
+/// Light by the gradient of the opacity, along which the normal N = A z + B is linear (dissertation, eqs. 5.3.16 to
+/// 5.3.20): of c(s) (d tau/ds)^power w(z), where the weight w is z^z_power, or a highlight's (1 + v z)^power. In the
+/// integral of the radiance it is the emission density, whatever the transfer function's convention says. Corrected:
+/// the normal is of the length 1, so that d tau/ds counts by its sign alone, and w is not negative.
+struct GradientLight {
+  double power = 1;
+  int z_power = 0;
+  double v = 0;  ///< (A.H) / (B.H) of a highlight; 0: none
+  bool is_corrected = false;
+};
+
 /// Exact slabs of the model, in its own coordinate: z is cut where h meets the transfer function's points, by the
 /// closed form of its inverse branches. Between two cuts tau(h(z)) is a parabola in z: the optical depth is exact, the
 /// colour a Gauss-Legendre quadrature of 16 nodes whose parts are at most 2 deep. No singular weight 1 / (2 sqrt|s -
@@ -67,23 +97,19 @@ class QuadraticGraySlabs {
   /// Light sent to the front, and opacity.
   vec4 operator()(const QuadraticGray& slab);
 
+  /// The slab lit by the gradient of the opacity, and its opacity. Throws InputError where it is not defined: at jumps
+  /// of the extinction that the slab crosses, and as printed for powers of negative slopes that are not whole.
+  vec4 operator()(const QuadraticGray& slab, const GradientLight& light);
+
   /// omega = integral of tau(h(z)) over 0..D', so that the opacity is 1 - exp(-R omega).
   double omega(const QuadraticGray& slab);
 
  private:
-  /// Optics on an interval between two points: value + slope (s - from), for each of q (three) and tau.
-  struct Interval {
-    double from = 0;
-    std::array<double, 3> color{};
-    std::array<double, 3> color_slope{};
-    double extinction = 0;
-    double extinction_slope = 0;
-  };
+  /// Sums up the light: `weight_at` gives what the colour is multiplied by to give the emission density at z.
+  template <class WeightAt>
+  vec4 integrate(const QuadraticGray& slab, const WeightAt& weight_at);
 
-  [[nodiscard]] double depth(const QuadraticGray& slab, const Interval& interval, double from, double to) const;
-
-  std::vector<double> scalars_;      ///< where intervals meet
-  std::vector<Interval> intervals_;  ///< one before the first point, one behind the last
+  TransferIntervals transfer_;
   std::vector<QuadraticGrayCut> cuts_;
   Emission emission_;
 };
