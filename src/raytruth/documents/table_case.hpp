@@ -43,6 +43,12 @@ struct MadeTable {
   nlohmann::ordered_json error;  ///< of look-ups in the format's numbers, against proven values
 };
 
+/// By the builder, in binary32 where `table_for_format` allows it.
 MadeTable make_table(const TableCase& asked);
+
+// A table that was made for the case elsewhere, as by a shader.
+
+MadeTable judged(const TableCase& asked, const TableBuilder& builder, const Table<double>& table);
+MadeTable judged(const TableCase& asked, const Table3<float>& table);
 
 }  // namespace raytruth

@@ -9,6 +9,7 @@
 #include "raytruth/schemes/order2.hpp"
 #include "raytruth/tables/second_order.hpp"
 #include "raytruth/tables/table_builders.hpp"
+#include "raytruth/tables/table_for_format.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -158,7 +159,8 @@ Table<double> table_of(const Scene& scene) {
   const TableBuilder* const builder = find_named(catalogue::table_builders(), scene.table->builder);
   if (builder == nullptr)
     throw InputError(fmt::format("table builder {}; one of the listed is allowed", scene.table->builder));
-  return stored(scene.table->format, builder->make(scene.transfer, table_axes(scene), scene.emission));
+  const TableFormat& format = scene.table->format;
+  return stored(format, table_for_format(*builder, scene.transfer, table_axes(scene), scene.emission, format));
 }
 
 /// A factory of renderers that `make(field)` makes, of any kind of field.
