@@ -2,6 +2,10 @@
 #include "experiments/result.hpp"
 #include "program/command.hpp"
 #include "raytruth/documents/table_case.hpp"
+#include "raytruth/gl/device.hpp"
+#include "raytruth/gl/table_builds.hpp"
+#include "raytruth/tables/brute_force.hpp"
+#include "raytruth/tables/fast_second_order.hpp"
 #include "raytruth/tables/table_file.hpp"
 
 #include <fmt/format.h>
@@ -20,6 +24,7 @@ struct TableOptions {
   std::string table_case;
   std::string file;
   int threads = 0;
+  std::optional<std::string> gl;
 };
 
 using Json = nlohmann::ordered_json;
@@ -32,8 +37,40 @@ MakeBytes writer_of(const std::filesystem::path& file) {
                                file.string(), file.extension().string()));
 }
 
+/// The table by a compute shader, and what ran it.
+struct TableOfShader {
+  MadeTable table;
+  GlIdentity device;
+};
+
+TableOfShader make_in_shader(const TableCase& asked, const std::string& platform) {
+  const JsonReader place = asked.json.at("builder");
+  const auto* const builder = std::get_if<const TableBuilder*>(&asked.builder);
+  const auto* const method = std::get_if<SecondOrderMethod>(&asked.builder);
+  const auto* const iterations = method != nullptr ? std::get_if<Iterations>(method) : nullptr;
+  const bool is_brute_force = builder != nullptr && (*builder)->name == "brute_force";
+  if (!is_brute_force && iterations == nullptr)
+    place.refuse(fmt::format("{} with --gl", place.text()),
+                 "brute_force and second_order_iterations, which shaders make, or any builder without --gl");
+  if (iterations != nullptr && !is_linear_between_entries(*asked.transfer, asked.axes))
+    asked.json.at("transfer_function")
+        .refuse("points between the table's entries, or jumps, with --gl",
+                "points at low + (high - low) i / (size - 1), which is all that the shader reads, or no --gl");
+  const auto device = open_gl(platform == "egl" ? GlPlatform::egl : GlPlatform::osmesa);
+  if (iterations != nullptr)
+    return {
+        judged(asked, second_order_table_in_shader(*device, *asked.transfer, asked.axes, asked.emission, *iterations)),
+        device->identity()};
+  const Table<float> made =
+      brute_force_table_in_shader(*device, sampled(*asked.transfer, asked.axes, asked.emission), asked.axes);
+  Table<double> table(asked.axes);
+  table.values.assign(made.values.begin(), made.values.end());
+  return {judged(asked, **builder, table), device->identity()};
+}
+
 /// What a renderer's author wants to know of the table, beside it.
-Json description(const TableCase& asked, const MadeTable& table, const std::filesystem::path& file) {
+Json description(const TableCase& asked, const MadeTable& table, const std::optional<GlIdentity>& device,
+                 const std::filesystem::path& file) {
   Json text{{"raytruth", "table/1"},
             {"table", file.filename().string()},
             {"shape", table.shape},
@@ -49,6 +86,11 @@ Json description(const TableCase& asked, const MadeTable& table, const std::file
   text["error"] = table.error;
   text["case"] = asked.json.json();
   text["build"] = build_identity();
+  if (device)
+    text["gl"] = {{"platform", device->platform},
+                  {"vendor", device->vendor},
+                  {"renderer", device->renderer},
+                  {"version", device->version}};
   return text;
 }
 
@@ -63,7 +105,13 @@ int write_table(const TableOptions& options) {
   if (make_bytes == nrrd_bytes) json.at("format").blame_for([&] { return nrrd_bytes({}, {}, asked.format); });
   for (const std::string& warning : warnings) say(warning);
 
-  const MadeTable table = make_table(asked);
+  std::optional<GlIdentity> device;
+  const MadeTable table = [&] {
+    if (!options.gl) return make_table(asked);
+    TableOfShader made = make_in_shader(asked, *options.gl);
+    device = std::move(made.device);
+    return std::move(made.table);
+  }();
   const auto is_beyond = [](double value) { return value > 1; };
   const auto beyond = std::count_if(table.values.begin(), table.values.end(), is_beyond);
   if (asked.format.is_texel && asked.format.type != TexelType::float32 && asked.format.type != TexelType::float16 &&
@@ -75,7 +123,7 @@ int write_table(const TableOptions& options) {
   const std::filesystem::path temporary = temporary_beside(file);
   write_temporary(temporary, file, make_bytes(table.shape, table.values, asked.format));
   try {
-    write_whole(file.string() + ".json", description(asked, table, file).dump(2) + "\n");
+    write_whole(file.string() + ".json", description(asked, table, device, file).dump(2) + "\n");
   } catch (...) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
@@ -91,6 +139,8 @@ std::function<int()> describe(CommandOptions& add) {
   add.required_text("-o", "FILE", options->file,
                     "Write this file, .npy or .nrrd, and FILE.json beside it, with its error");
   add.threads(options->threads);
+  add.word("--gl", options->gl, {"osmesa", "egl"},
+           "Make it in a compute shader, by osmesa or by egl, a GPU's driver: brute_force and second_order_iterations");
   return [options] { return write_table(*options); };
 }
 

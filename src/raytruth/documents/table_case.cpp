@@ -11,6 +11,7 @@
 #include "raytruth/tables/look_up_error.hpp"
 #include "raytruth/tables/partial_pre_integration.hpp"
 #include "raytruth/tables/table_file.hpp"
+#include "raytruth/tables/table_for_format.hpp"
 
 #include <fmt/format.h>
 
@@ -65,8 +66,9 @@ Json error_json(const LookUpError& error) {
   return json;
 }
 
-MadeTable linear_table(const TableCase& asked, const TableBuilder& builder) {
-  Table<double> table = builder.make(*asked.transfer, asked.axes, asked.emission);
+}  // namespace
+
+MadeTable judged(const TableCase& asked, const TableBuilder& builder, const Table<double>& table) {
   const std::size_t n = asked.axes.size;
   const bool is_slab = builder.content.is_slab();
   Json error = error_json(
@@ -79,8 +81,7 @@ MadeTable linear_table(const TableCase& asked, const TableBuilder& builder) {
           .error = std::move(error)};
 }
 
-MadeTable parabolic_table(const TableCase& asked, const SecondOrderMethod& method) {
-  const Table3<float> table = second_order_table(*asked.transfer, asked.axes, asked.emission, method);
+MadeTable judged(const TableCase& asked, const Table3<float>& table) {
   const std::size_t n = asked.axes.size;
   return {.shape = {n, n, n, 4},
           .values = {table.values.begin(), table.values.end()},
@@ -88,6 +89,8 @@ MadeTable parabolic_table(const TableCase& asked, const SecondOrderMethod& metho
           .error =
               error_json(second_order_look_up_error(table, *asked.transfer, asked.axes, asked.emission, asked.format))};
 }
+
+namespace {
 
 /// The model's exact table has certified entries, proven ones; that of the print is what it is.
 MadeTable quadratic_table(const TableCase& asked, const QuadraticGrayAsked& quadratic) {
@@ -189,9 +192,16 @@ TableCase read_table_case(const JsonReader& json, std::vector<std::string>& warn
 }
 
 MadeTable make_table(const TableCase& asked) {
-  if (const auto* const builder = std::get_if<const TableBuilder*>(&asked.builder))
-    return linear_table(asked, **builder);
-  if (const auto* const method = std::get_if<SecondOrderMethod>(&asked.builder)) return parabolic_table(asked, *method);
+  if (const auto* const builder = std::get_if<const TableBuilder*>(&asked.builder)) {
+    MadeTable table = judged(asked, **builder,
+                             table_for_format(**builder, *asked.transfer, asked.axes, asked.emission, asked.format));
+    if (is_made_in_binary32(**builder, *asked.transfer, asked.format))
+      table.error["arithmetic"] =
+          "entries made in binary32, within 1e-5 of the builder's in binary64; \"float64\" has those";
+    return table;
+  }
+  if (const auto* const method = std::get_if<SecondOrderMethod>(&asked.builder))
+    return judged(asked, second_order_table(*asked.transfer, asked.axes, asked.emission, *method));
   if (const auto* const quadratic = std::get_if<QuadraticGrayAsked>(&asked.builder))
     return quadratic_table(asked, *quadratic);
   return psi_table(asked);

@@ -52,6 +52,12 @@ struct MadeTable {
   std::optional<double> last_scalar = {};  ///< of the last entry, where that is not the range's end
 };
 
+/// By the builder, in binary32 where `table_for_format` allows it.
 MadeTable make_table(const TableCase& asked);
+
+// A table that was made for the case elsewhere, as by a shader.
+
+MadeTable judged(const TableCase& asked, const TableBuilder& builder, const Table<double>& table);
+MadeTable judged(const TableCase& asked, const Table3<float>& table);
 
 }  // namespace raytruth

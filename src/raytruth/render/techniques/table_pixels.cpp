@@ -10,6 +10,7 @@
 #include "raytruth/tables/quadratic_gray_table.hpp"
 #include "raytruth/tables/second_order.hpp"
 #include "raytruth/tables/table_builders.hpp"
+#include "raytruth/tables/table_for_format.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -186,7 +187,8 @@ Table<double> table_of(const Scene& scene) {
   const TableBuilder* const builder = find_named(catalogue::table_builders(), scene.table->builder);
   if (builder == nullptr)
     throw InputError(fmt::format("table builder {}; one of the listed is allowed", scene.table->builder));
-  return stored(scene.table->format, builder->make(scene.transfer, table_axes(scene), scene.emission));
+  const TableFormat& format = scene.table->format;
+  return stored(format, table_for_format(*builder, scene.transfer, table_axes(scene), scene.emission, format));
 }
 
 /// A factory of renderers that `make(field)` makes, of any kind of field.
