@@ -382,6 +382,10 @@ class Refusals(ProgramTest):
             ("order1", {"size": 64, "builder": "second_order_exact"}, "exact"), ("order1", {"size": 1e9}, "16384"),
             ("order2", {"size": 64, "builder": "second_order_iterations"}, "iterations"),
             ("order2", {"size": 64, "iterations": 64}, "iterations"),
+            ("order2", {"size": 64, "builder": "quadratic_gray", "radius": {"axis": "signed", "low": 8, "high": 1, "count": 7}}, "low < high"),
+            ("order2", {"size": 64, "radius": {"axis": "signed", "low": 1, "high": 8, "count": 7}}, "radius"),
+            ("quadratic_gray", {"size": 64, "builder": "second_order_exact"}, "quadratic_gray"),
+            ("quadratic_gray", {"size": 1025}, "1024"),
         ):
             with self.subTest(scheme=scheme, table=table):
                 done = self.run_program("render", self.write("s.json", {**SCENE, "scheme": scheme, "table": table}), "-o", "i.npy")

@@ -27,6 +27,8 @@ CASE = {
 }
 RAMP = changed(CASE, "/transfer_function/points/0", {"s": 0, "extinction": 0, "color": [0, 0, 1]})
 PARABOLAS = changed(changed(CASE, "/builder", "second_order_iterations"), "/iterations", 16)
+RADIUS = {"axis": "signed", "low": 0.25, "high": 4, "count": 2}
+QUADRATIC = changed(changed(CASE, "/builder", "quadratic_gray"), "/radius", RADIUS)
 PSI = {"builder": "partial_pre_integration", "size": 16}
 OPACITY = 1 - math.exp(-2)
 SLAB = [OPACITY, 0.5 * OPACITY, 0.25 * OPACITY, OPACITY]
@@ -143,6 +145,54 @@ class Files(TableTest):
         self.assertEqual((psi[0, 0], psi[15, 15]), (1, 0))
         self.assertLess(beside["error"]["max"], 0.1)
 
+    @unittest.skipIf(numpy is None, "numpy (Debian: python3-numpy) is not installed")
+    def test_quadratic_tables(self):
+        file, beside = self.make(QUADRATIC)
+        table = numpy.load(file)
+        self.assertEqual(table.shape, (5, 8, 8, 4))
+        self.assertLess(abs(table - SLAB).max(), 1e-6)
+        self.assertLess(beside["error"]["max"], 1e-6)
+        self.assertLess(beside["error"]["entries"]["error_bound"], 1e-12)
+        self.assertEqual([round(a, 9) for a in beside["radius"]["curvatures"]], [-16, -0.0625, 0, 0.0625, 16])
+        # As printed: R = 2^-3 to 2^3 above the linear table, every 32nd gray value.
+        printed = changed(changed(QUADRATIC, "/builder", "quadratic_gray_printed"), "/radius", ...)
+        file, beside = self.make(printed)
+        self.assertEqual(numpy.load(file).shape, (8, 8, 8, 4))
+        self.assertEqual(beside["high"], 224)
+        self.assertIsNone(beside["error"]["entries"]["error_bound"])
+        self.assertGreater(beside["error"]["max"], 0.01)
+
+    @unittest.skipIf(numpy is None, "numpy (Debian: python3-numpy) is not installed")
+    def test_an_entry_of_a_quadratic_table_is_the_slab_of_order2(self):
+        table = numpy.load(self.make(changed(changed(QUADRATIC, "/transfer_function", RAMP["transfer_function"]), "/format", "float64"))[0])
+        front, back, a = 255 * 2 / 7, 255 * 5 / 7, -16
+        case = {
+            "signal": {"kind": "piecewise_polynomial", "breaks": [0, 1], "coefficients": [[front, back - front - a, a]]},
+            "transfer_function": RAMP["transfer_function"], "sampling": {"kind": "constant", "step": 0.5},
+            "schemes": ["reference", "order2", "quadratic_gray", "quadratic_gray_printed"],
+        }
+        answer = self.json_of("eval", "-", stdin=case)
+        truth = numpy.array([*answer["reference"]["color"], answer["reference"]["opacity"]])
+        self.assertLess(abs(table[0, 5, 2] - truth).max(), 1e-12)
+        for name, least, most in (("order2", 0, 1e-12), ("quadratic_gray", 0, 1e-12), ("quadratic_gray_printed", 1e-4, 1)):
+            scheme = answer["schemes"][name]
+            error = abs(numpy.array([*scheme["color"], scheme["opacity"]]) - truth).max()
+            self.assertTrue(least <= error <= most, (name, error))
+
+    @unittest.skipIf(numpy is None, "numpy (Debian: python3-numpy) is not installed")
+    def test_light_by_the_gradient_of_the_opacity(self):
+        """Along a straight ramp of extinction 2 over 255 gray values dtau/ds is the same everywhere."""
+        ramp = changed(QUADRATIC, "/transfer_function", RAMP["transfer_function"])
+        lit = changed(ramp, "/light", "diffuse")
+        diffuse = numpy.load(self.make(lit)[0])
+        printed = numpy.load(self.make(changed(lit, "/gradient", "printed"))[0])
+        self.assertLess(abs(printed[..., :3] - diffuse[..., :3] * 2 / 255).max(), 1e-6)
+        specular = changed(changed(changed(ramp, "/light", "specular"), "/exponent", 8), "/v", {"low": -0.5, "high": 0.5, "count": 3})
+        file, beside = self.make(specular)
+        self.assertEqual(numpy.load(file).shape, (3, 5, 8, 8, 4))
+        self.assertEqual(beside["radius"]["v"], [-0.5, 0, 0.5])
+        self.assertLess(abs(numpy.load(file)[1] - diffuse).max(), 1e-6)  # v = 0: as wide as diffuse light
+
     def test_the_error_is_that_of_the_builder(self):
         """Without attenuation a constant slab sends out its depth times its colour: 2 (1, 1/2, 1/4)."""
         _, beside = self.make(changed(CASE, "/builder", "no_attenuation"))
@@ -166,7 +216,13 @@ class Files(TableTest):
     def test_every_builder_of_the_catalogue(self):
         listed = [entry["name"] for entry in self.json_of("list", "tables", "--json")]
         names = SCHEMAS[2]["$defs"]["table_builder"]["enum"]
-        self.assertEqual(names + SCHEMAS[2]["$defs"]["second_order_builder"]["enum"] + ["partial_pre_integration"], listed)
+        self.assertEqual(
+            names
+            + SCHEMAS[2]["$defs"]["second_order_builder"]["enum"]
+            + SCHEMAS[2]["$defs"]["quadratic_gray_builder"]["enum"]
+            + ["partial_pre_integration"],
+            listed,
+        )
         for name in names:
             self.make(changed(CASE, "/builder", name))
 
@@ -196,11 +252,22 @@ class Refusals(TableTest):
         (changed(PARABOLAS, "/iterations", 0), "/iterations", "1"),
         (changed(CASE, "/unknown", 1), "/unknown", ""),
         (changed(PSI, "/length", 1), "/length", ""),
+        (changed(QUADRATIC, "/size", 1025), "/size", "1024"),
+        (changed(QUADRATIC, "/radius/axis", "equal"), "/radius/axis", "equal_steps"),
+        (changed(QUADRATIC, "/radius/low", 8), "/radius", "low < high"),
+        (changed(QUADRATIC, "/radius/axis", "powers_of_two"), "/radius", "high = 2^(k + count - 1)"),
+        (changed(QUADRATIC, "/radius/count", 0), "/radius/count", "1"),
+        (changed(QUADRATIC, "/radius/high", ...), "/radius/high", ""),
+        (changed(changed(QUADRATIC, "/builder", "quadratic_gray_printed"), "/size", 33), "/size", "every (256 / n)-th"),
+        (changed(CASE, "/radius", RADIUS), "/radius", ""),
+        (changed(QUADRATIC, "/exponent", 8), "/exponent", "diffuse or specular"),
+        (changed(changed(QUADRATIC, "/light", "specular"), "/exponent", 8), "/v", ""),
+        (changed(changed(QUADRATIC, "/light", "diffuse"), "/exponent", 8), "/exponent", "specular"),
         (changed(CASE, "/transfer_function/points/0/extinction", -1), "/transfer_function/points/0/extinction", "0"),
     ]
 
     def test_bad_cases(self):
-        only_program = {"ascending", "optical depth", "depth"}  # what no schema can say
+        only_program = {"ascending", "optical depth", "depth", "low < high", "high = 2^(k + count - 1)", "every (256 / n)-th"}  # what no schema can say
         for case, pointer, words in self.bad:
             with self.subTest(pointer=pointer, words=words):
                 done = self.run_program("table", self.write("case.json", case), "-o", "bad.npy")

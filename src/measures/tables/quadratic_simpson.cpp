@@ -19,11 +19,13 @@ constexpr std::size_t grays = 256;
 struct Options {
   std::vector<double> offsets;  ///< i - M
   double extinction = 0;        ///< of the constant transfer function of whole slabs, their length 1
+  std::size_t stride = 1;       ///< of the gray values at their ends
 };
 
 Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
-  json.only({"kind", "offsets", "extinction"});
+  json.only({"kind", "offsets", "extinction", "stride"});
   Options options{.offsets = {}, .extinction = json.at("extinction").positive_number()};
+  if (const auto stride = json.find("stride")) options.stride = static_cast<std::size_t>(stride->integer(1, grays));
   for (const JsonReader& item : json.at("offsets").items()) options.offsets.push_back(item.positive_number());
   return options;
 }
@@ -104,7 +106,7 @@ std::vector<Method> methods() {
           {"repaired", QuadraticGrayPrint::repaired()}};
 }
 
-std::vector<OmegaError> omega_errors(double extinction) {
+std::vector<OmegaError> omega_errors(double extinction, std::size_t stride) {
   const PiecewiseLinear transfer({{0, {extinction, {1, 1, 1}}}});
   const double truth = -std::expm1(-extinction);
   std::vector<OmegaError> errors;
@@ -115,8 +117,8 @@ std::vector<OmegaError> omega_errors(double extinction) {
     for (std::size_t node = 1; node < axis.node_count(); ++node) {
       const double curvature = axis.curvature(node);
       const double radius = 1 / std::sqrt(curvature);
-      for (std::size_t front = 0; front < grays; ++front)
-        for (std::size_t back = front; back < grays; ++back) {
+      for (std::size_t front = 0; front < grays; front += stride)
+        for (std::size_t back = front; back < grays; back += stride) {
           const double slope = static_cast<double>(back - front) * radius - 1 / radius;
           const std::size_t course = slope > 0 ? 0 : slope == 0 ? 1 : 2;
           const double error = std::abs(-std::expm1(-radius * printed.omega(front, back, curvature)) - truth);
@@ -229,7 +231,7 @@ std::vector<Record> records(const Experiment& /*experiment*/, const Options& opt
       add_level_errors(extinction, offset, errors);
       for (const LevelError& error : errors) records.push_back({error});
     }
-  for (const OmegaError& error : omega_errors(options.extinction)) records.push_back({error});
+  for (const OmegaError& error : omega_errors(options.extinction, options.stride)) records.push_back({error});
   const RadiusAxis axis = printed_radius_axis();
   for (std::size_t i = axis.count; i-- > 0;) records.push_back({lost_share(1 / axis.radius(i))});
   return records;

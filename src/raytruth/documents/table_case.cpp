@@ -54,6 +54,49 @@ void read_slabs(const JsonReader& json, TableCase& asked, std::vector<std::strin
   });
 }
 
+bool is_highlight(GradientTable which) { return which != GradientTable::diffuse && which != GradientTable::diffuse_z; }
+
+/// "light", "gradient", "exponent" and "v" of a quadratic table; none: its colours.
+std::optional<QuadraticGrayAsked::Lit> read_gradient_light(const JsonReader& json, bool is_corrected_model) {
+  const auto light = json.find("light");
+  if (!light || light->text() == "ambient") {
+    for (const char* const key : {"gradient", "exponent", "v"})
+      if (const auto found = json.find(key))
+        found->refuse(fmt::format("a {} without light by the gradient", key), "one with the light diffuse or specular");
+    return {};
+  }
+  std::vector<std::string_view> words{"ambient"};
+  words.insert(words.end(), gradient_table_names.begin(), gradient_table_names.end());
+  const std::string word = light->word(words);
+  if (!is_corrected_model)
+    light->refuse("the light " + word + " with quadratic_gray_printed",
+                  "quadratic_gray, whose \"gradient\" is printed or corrected");
+  QuadraticGrayAsked::Lit lit;
+  lit.which = static_cast<GradientTable>(std::find(gradient_table_names.begin(), gradient_table_names.end(), word) -
+                                         gradient_table_names.begin());
+  if (const auto gradient = json.find("gradient"))
+    lit.is_corrected = gradient->word({"corrected", "printed"}) == "corrected";
+  if (!is_highlight(lit.which)) {
+    for (const char* const key : {"exponent", "v"})
+      if (const auto found = json.find(key))
+        found->refuse(fmt::format("a {} of diffuse light", key), "one with a specular light");
+    return lit;
+  }
+  lit.exponent = json.at("exponent").positive_number();
+  const JsonReader v = json.at("v");
+  v.only({"low", "high", "count"});
+  const double low = v.at("low").number();
+  const double high = v.at("high").number();
+  const auto count = static_cast<std::size_t>(v.at("count").integer(2, 256));
+  const bool is_ratio = lit.which != GradientTable::specular;
+  if (!(low < high) || (is_ratio && (low < 0 || high > 1)))
+    v.refuse(fmt::format("{} to {}", low, high), is_ratio ? "ascending ends from 0 to 1" : "ascending ends");
+  lit.v.clear();
+  for (std::size_t i = 0; i < count; ++i)
+    lit.v.push_back(low + (high - low) * static_cast<double>(i) / static_cast<double>(count - 1));
+  return lit;
+}
+
 Json error_json(const LookUpError& error) {
   Json json{{"look_up", error.look_up}, {"max", error.max}};
   if (error.max_at) json["max_at"] = {{"front", (*error.max_at)[0]}, {"back", (*error.max_at)[1]}};
@@ -92,8 +135,40 @@ MadeTable judged(const TableCase& asked, const Table3<float>& table) {
 
 namespace {
 
+/// A table for every v, one behind the other.
+MadeTable gradient_tables(const TableCase& asked, const QuadraticGrayAsked& quadratic) {
+  const auto& lit = *quadratic.lit;
+  MadeTable made;
+  const std::size_t n = asked.axes.size;
+  for (const double v : lit.v) {
+    const auto table = asked.json.at("light").blame_for([&] {
+      return gradient_lit_table(*asked.transfer, asked.axes, quadratic.radius, lit.which, lit.exponent, v,
+                                lit.is_corrected);
+    });
+    made.values.insert(made.values.end(), table.values.begin(), table.values.end());
+  }
+  made.radius = radius_axis_json(quadratic.radius);
+  made.shape = {quadratic.radius.node_count(), n, n, 4};
+  const Json of_entry{"curvature, in gray values per squared length", "back scalar", "front scalar",
+                      "red, green, blue of the light, opacity"};
+  made.axes = of_entry;
+  if (is_highlight(lit.which)) {
+    made.shape.insert(made.shape.begin(), lit.v.size());
+    made.axes = Json::array({lit.which == GradientTable::specular ? "v" : "ratio"});
+    made.axes.insert(made.axes.end(), of_entry.begin(), of_entry.end());
+    made.radius["v"] = lit.v;
+  }
+  double rounding = 0;
+  for (const double value : made.values)
+    rounding = std::max(rounding, std::abs(read_back(asked.format, value) - value));
+  made.error = {{"entries", {{"error", "that of rounding, about 1e-13 of the largest: not proven"}}},
+                {"rounding_max", rounding}};
+  return made;
+}
+
 /// The model's exact table has certified entries, proven ones; that of the print is what it is.
 MadeTable quadratic_table(const TableCase& asked, const QuadraticGrayAsked& quadratic) {
+  if (quadratic.lit) return gradient_tables(asked, quadratic);
   const bool is_certified = quadratic.builder->name == certified_quadratic_gray;
   QuadraticGrayTable<double> table;
   Json nodes;
@@ -103,7 +178,9 @@ MadeTable quadratic_table(const TableCase& asked, const QuadraticGrayAsked& quad
     table = std::move(certified.table);
     nodes = {{"error_bound", certified.radius}};
   } else {
-    table = in_binary64(quadratic.builder->make(*asked.transfer, asked.axes, quadratic.radius, asked.emission));
+    table = asked.json.at("size").blame_for([&] {
+      return in_binary64(quadratic.builder->make(*asked.transfer, asked.axes, quadratic.radius, asked.emission));
+    });
     nodes = {{"error_bound", nullptr}, {"why", "sums over gray values as printed"}};
   }
   Json error =
@@ -164,7 +241,8 @@ TableCase read_table_case(const JsonReader& json, std::vector<std::string>& warn
   if (is_psi)
     json.only({"raytruth", "builder", "size", "format"});
   else if (quadratic != nullptr)
-    json.only({"raytruth", "transfer_function", "emission", "builder", "size", "length", "range", "radius", "format"});
+    json.only({"raytruth", "transfer_function", "emission", "builder", "size", "length", "range", "radius", "format",
+               "light", "gradient", "exponent", "v"});
   else if (second_order != nullptr && second_order->takes_iterations)
     json.only(
         {"raytruth", "transfer_function", "emission", "builder", "iterations", "size", "length", "range", "format"});
@@ -180,6 +258,7 @@ TableCase read_table_case(const JsonReader& json, std::vector<std::string>& warn
   } else if (quadratic != nullptr) {
     QuadraticGrayAsked of_model{.builder = quadratic, .radius = quadratic->radius};
     if (const auto radius = json.find("radius")) of_model.radius = read_radius_axis(*radius, quadratic->radius);
+    of_model.lit = read_gradient_light(json, name == certified_quadratic_gray);
     asked.builder = of_model;
   } else if (!is_psi) {
     asked.builder = find_named(catalogue::table_builders(), name);

@@ -23,8 +23,17 @@ struct PartialPreIntegration {};
 
 /// A table of the quadratic gray-value model.
 struct QuadraticGrayAsked {
+  /// Light by the gradient of the opacity instead of colours.
+  struct Lit {
+    GradientTable which = GradientTable::diffuse;
+    bool is_corrected = true;
+    double exponent = 1;
+    std::vector<double> v = {0};  ///< one table for each; of highlights alone
+  };
+
   const QuadraticGrayBuilder* builder = nullptr;
   RadiusAxis radius = {};
+  std::optional<Lit> lit = {};
 };
 
 /// A case of `raytruth table`; experiments/schemas/table.json describes it.

@@ -142,9 +142,15 @@ double QuadraticGraySlabs::omega(const QuadraticGray& slab) {
 }
 
 template <class WeightAt>
-QuadraticGraySlabs::vec4 QuadraticGraySlabs::integrate(const QuadraticGray& slab, const WeightAt& weight_at) {
+QuadraticGraySlabs::vec4 QuadraticGraySlabs::integrate(const QuadraticGray& slab, const WeightAt& weight_at,
+                                                       double kink) {
   static const Rule rule;
   cut(slab, transfer_.scalars, cuts_);
+  if (kink > 0 && kink < slab.scaled_length) {
+    const auto behind =
+        std::find_if(cuts_.begin(), cuts_.end(), [kink](const QuadraticGrayCut& c) { return c.z >= kink; });
+    cuts_.insert(behind, {kink, (behind - 1)->interval});
+  }
   vec4 result = vec4::Zero();
   double in_front = 0;  // the optical depth so far
   for (std::size_t i = 0; i + 1 < cuts_.size(); ++i) {
@@ -194,19 +200,24 @@ QuadraticGraySlabs::vec4 QuadraticGraySlabs::operator()(const QuadraticGray& sla
           "found a jump of the extinction at scalar {} with light by its gradient; continuous extinctions are allowed",
           above.from));
   }
-  return integrate(slab, [&light](const Interval& interval, double z) {
+  const double difference = (light.back - light.front) / slab.scaled_length;
+  const auto weight_at = [&](const Interval& interval, double z) {
     const double slope = interval.extinction_slope;
-    const double sign = slope > 0 ? 1 : slope < 0 ? -1 : 0;
-    const double strength = light.is_corrected ? sign : std::pow(slope, light.power);
+    double weight = light.front + difference * z;
+    if (light.is_corrected) {
+      // Where the extinction falls the normal is turned round.
+      const double sign = slope > 0 ? 1 : slope < 0 ? -1 : 0;
+      weight = std::max(sign * weight, 0.0);
+      return sign == 0 ? 0.0 : std::pow(weight, light.weight_power);
+    }
+    const double strength = std::pow(slope, light.slope_power);
     if (std::isnan(strength))
       throw InputError(fmt::format(
           "found a falling extinction and the exponent {}, a power of a negative number; whole exponents are allowed",
-          light.power));
-    double weight = strength * std::pow(z, light.z_power);
-    const double highlight = light.is_corrected ? std::max(1 + light.v * z, 0.0) : 1 + light.v * z;
-    if (light.v != 0) weight *= std::pow(highlight, light.power);
-    return weight;
-  });
+          light.slope_power));
+    return strength * std::pow(weight, light.weight_power);
+  };
+  return integrate(slab, weight_at, light.is_corrected ? -light.front / difference : 0.0);
 }
 
 }  // namespace raytruth

@@ -69,14 +69,20 @@ struct TransferIntervals {
   std::vector<Interval> intervals = {};
 };
 
-/// Light by the gradient of the opacity, along which the normal N = A z + B is linear (dissertation, eqs. 5.3.16 to
-/// 5.3.20): of c(s) (d tau/ds)^power w(z), where the weight w is z^z_power, or a highlight's (1 + v z)^power. In the
-/// integral of the radiance it is the emission density, whatever the transfer function's convention says. Corrected:
-/// the normal is of the length 1, so that d tau/ds counts by its sign alone, and w is not negative.
+/// Light by the gradient of the opacity, along which the normal is linear in z (dissertation, eqs. 5.3.16 to 5.3.20):
+/// of
+///
+///     c(s) (d tau/ds)^slope_power w(z)^weight_power,  w linear from `front` to `back`,
+///
+/// w being N.L or N.H, or what a table holds of it: 1, z (0 to D'), or 1 + v z. It is the emission density as it
+/// stands, whatever the transfer function's convention says. Corrected: the normal has the length 1, so that d tau/ds
+/// counts by its sign alone (where it falls the normal points the other way), and the weight is clamped at 0 at every
+/// point.
 struct GradientLight {
-  double power = 1;
-  int z_power = 0;
-  double v = 0;  ///< (A.H) / (B.H) of a highlight; 0: none
+  double slope_power = 1;
+  double weight_power = 1;
+  double front = 1;
+  double back = 1;
   bool is_corrected = false;
 };
 
@@ -105,9 +111,10 @@ class QuadraticGraySlabs {
   double omega(const QuadraticGray& slab);
 
  private:
-  /// Sums up the light: `weight_at` gives what the colour is multiplied by to give the emission density at z.
+  /// Sums up the light: `weight_at` gives what the colour is multiplied by to give the emission density at z; it may
+  /// have a kink inside, else 0.
   template <class WeightAt>
-  vec4 integrate(const QuadraticGray& slab, const WeightAt& weight_at);
+  vec4 integrate(const QuadraticGray& slab, const WeightAt& weight_at, double kink = 0);
 
   TransferIntervals transfer_;
   std::vector<QuadraticGrayCut> cuts_;

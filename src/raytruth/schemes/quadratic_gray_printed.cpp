@@ -176,14 +176,14 @@ void QuadraticGrayPrinted::cut(double front, double back, const Curve& curve, bo
   add_levels(first_level, front + more, true, times);
   add_bottom(true, times);
   add_bottom(false, times);
-  add_levels(first_level, front + more, false, times);  // for opacities front <= back
-  if (is_of_opacity) {
-    add_levels(front, back + more, false, is_nested ? 3 : 1);
-    if (is_nested) add_levels(first_level + 1, front + more, false, 2);
+  if (!is_of_opacity || is_negative) {
+    add_levels(first_level, back + more, false, 1);
     return;
   }
-  while (!pieces_.empty() && !pieces_.back().falls && pieces_.back().low >= first_level) pieces_.pop_back();
-  add_levels(first_level, back, false, 1);
+  // Algorithm 9 doubles the sum up to S_f, the lower end, and adds that from there to S_b.
+  add_levels(first_level, front + more, false, times);
+  add_levels(front, back + more, false, is_nested ? 3 : 1);
+  if (is_nested) add_levels(first_level + 1, front + more, false, 2);
 }
 
 double QuadraticGrayPrinted::slope_of(const Curve& curve, double front, double back) {

@@ -2,6 +2,7 @@
 
 #include "raytruth/kernels/slab_kernels.hpp"
 #include "raytruth/reference/certified.hpp"
+#include "raytruth/schemes/quadratic_gray.hpp"
 #include "raytruth/tables/fast_quadratic_gray.hpp"
 #include "raytruth/tables/fast_second_order.hpp"
 #include "raytruth/tables/second_order.hpp"
@@ -99,6 +100,31 @@ QuadraticGrayTable<float> quadratic_gray_printed_table(const PiecewiseLinear& tr
       [&](QuadraticGrayPrinted& printed, std::size_t node, std::size_t front, std::size_t back) {
         table.set(node, front, back,
                   printed.entry(front * step, back * step, radius.curvature(node)).template cast<float>());
+      });
+  return table;
+}
+
+QuadraticGrayTable<double> gradient_lit_table(const PiecewiseLinear& transfer, const TableAxes& axes,
+                                              const RadiusAxis& radius, GradientTable which, double exponent, double v,
+                                              bool is_corrected) {
+  QuadraticGrayTable<double> table(axes, radius);
+  for_each_entry(
+      radius.node_count(), axes.size, [&] { return QuadraticGraySlabs(transfer, Emission::plain); },
+      [&](QuadraticGraySlabs& slabs, std::size_t node, std::size_t front, std::size_t back) {
+        const QuadraticGray slab =
+            QuadraticGray::of_curvature(axes.scalar(front), axes.scalar(back), table.curvature(node), axes.length);
+        GradientLight light{.is_corrected = is_corrected};
+        if (which == GradientTable::diffuse_z) {
+          light.front = 0;
+          light.back = slab.scaled_length;
+        } else if (which != GradientTable::diffuse) {
+          light.slope_power = light.weight_power = exponent;
+          if (which == GradientTable::specular) light.back = 1 + v * slab.scaled_length;
+          if (which == GradientTable::specular_from_front) light.back = v;
+          if (which == GradientTable::specular_from_back) light.front = v;
+        }
+        if (is_corrected) light.back = std::max(light.back, 0.0);
+        table.set(node, front, back, slabs(slab, light));
       });
   return table;
 }

@@ -69,6 +69,24 @@ QuadraticGrayTable<float> quadratic_gray_printed_table(const PiecewiseLinear& tr
                                                        const RadiusAxis& radius, Emission emission,
                                                        const QuadraticGrayPrint& print = {});
 
+/// Which light a table of the model holds that is lit by the gradient of the opacity (dissertation, section 5.3.4).
+enum class GradientTable {
+  diffuse,              ///< of c d tau/ds: what B.L is multiplied by (eq. 5.3.18)
+  diffuse_z,            ///< of z c d tau/ds: what A.L is multiplied by
+  specular,             ///< of (1 + v z)^n c (d tau/ds)^n, v = (A.H) / (B.H), to be multiplied by (B.H)^n (eq. 5.3.20)
+  specular_from_front,  ///< the same over the ratio of N_b.H to N_f.H, 0 to 1, to be multiplied by (N_f.H)^n: ours
+  specular_from_back,   ///< over the ratio of N_f.H to N_b.H, to be multiplied by (N_b.H)^n
+};
+
+inline constexpr std::array<std::string_view, 5> gradient_table_names{"diffuse", "diffuse_z", "specular",
+                                                                      "specular_from_front", "specular_from_back"};
+
+/// Such a table; `v` is v, or the ratio. As printed, or by normals of the length 1 whose weights are clamped at both
+/// ends: `is_corrected`. Throws InputError as QuadraticGraySlabs does.
+QuadraticGrayTable<double> gradient_lit_table(const PiecewiseLinear& transfer, const TableAxes& axes,
+                                              const RadiusAxis& radius, GradientTable which, double exponent, double v,
+                                              bool is_corrected);
+
 QuadraticGrayTable<double> in_binary64(const QuadraticGrayTable<float>& table);
 
 /// The look-up: bilinear in the scalars, along the axis as it says.

@@ -115,6 +115,33 @@ TEST(Renderer, TablesOfSecondOrderConvergeToTheirScheme) {
   }
 }
 
+TEST(Renderer, QuadraticTablesConvergeToTheirScheme) {
+  for (const char* const scheme : {"order2", "quadratic_gray"}) {
+    Scene scene = scene_of(scheme);
+    scene.step = 0.7;
+    const Image truth = image_of(scene);
+    const auto error_of = [&](std::size_t size, std::size_t count, double low) {
+      scene.table = SceneTable{.builder = "quadratic_gray",
+                               .size = size,
+                               .radius = RadiusAxis{.low = low, .high = 8, .count = count},
+                               .format = table_formats[0]};
+      return largest_difference(image_of(scene), truth);
+    };
+    const double coarse = error_of(17, 6, 0.0625);
+    EXPECT_LT(error_of(65, 24, 0.0625), coarse / 4);
+    // Where radii end before the data's steepest slabs these are clamped.
+    EXPECT_GT(error_of(65, 24, 4), error_of(65, 24, 0.0625));
+    scene.table->filter = TableFilter::nearest;
+    EXPECT_GT(largest_difference(image_of(scene), truth), coarse / 4);
+  }
+  Scene printed = scene_of("quadratic_gray_printed");
+  printed.step = 0.7;
+  printed.table = SceneTable{.builder = "quadratic_gray_printed", .size = 33};
+  EXPECT_THROW(image_of(printed), InputError);
+  printed.table->size = 32;
+  EXPECT_GT(largest_difference(image_of(printed), image_of(scene_of("order2"))), 1e-3);
+}
+
 TEST(Renderer, WhatItRefuses) {
   Scene scene = scene_of("order2");
   scene.table = SceneTable{};

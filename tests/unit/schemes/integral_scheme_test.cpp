@@ -188,6 +188,8 @@ TEST(EveryIntegralScheme, ScalesWithUnitsBitByBit) {
       SchemeIntegral integrate_longer(random_transfer(3, 0.125), emission);
       for (const IntegralScheme& scheme : catalogue::integral_schemes()) {
         SCOPED_TRACE(scheme.name);
+        // As printed radii stand at 2^-3 to 2^3 voxels, whatever a voxel is.
+        if (scheme.name == "quadratic_gray_printed") continue;
         const Outcome<> outcome = integrate(scheme, signal, at_step(signal, 0.5));
         const Outcome<> scaled = integrate_longer(scheme, longer, at_step(longer, 4));
         const double factor = emission == Emission::associated ? 1 : 8;
