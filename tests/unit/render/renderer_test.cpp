@@ -122,8 +122,8 @@ TEST(Renderer, QuadraticTablesConvergeToTheirScheme) {
     const Image truth = image_of(scene);
     const auto error_of = [&](std::size_t size, std::size_t count, double low) {
       scene.table = SceneTable{.builder = "quadratic_gray",
-                               .size = size,
                                .radius = RadiusAxis{.low = low, .high = 8, .count = count},
+                               .size = size,
                                .format = table_formats[0]};
       return largest_difference(image_of(scene), truth);
     };
