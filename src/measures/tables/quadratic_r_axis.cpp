@@ -113,6 +113,14 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
            .description = "n_R, of either sign",
            .is_key = true,
            .cell = [](const Record& record) { return record.axis.count; }},
+          {.name = "placing",
+           .description = "axis and look-up together, and the smallest radius where that is not 2^-3",
+           .cell =
+               [](const Record& record) {
+                 return fmt::format("{}, {}{}", radius_steps_names[static_cast<std::size_t>(record.axis.steps)],
+                                    look_up_names[static_cast<std::size_t>(record.axis.look_up)],
+                                    record.axis.low == low ? "" : ", from 2^-5");
+               }},
           {.name = "curvatures",
            .description = "flat: |a| = 2^-12 to 2^-6, below the print's threshold; covered: to 2^6, R = 2^-3; steep: "
                           "to 2^10, beyond its radii; logarithms equally likely, both signs",
@@ -129,6 +137,9 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
            .radius = "radius",
            .cell = &Record::root_mean_square},
           {.name = "radius", .description = "bound on the error of the errors", .cell = &Record::radius},
+          {.name = "error_over_equal_steps",
+           .description = "error_l1 over that of the most equal steps",
+           .cell = [](const Record& record) { return record.mean / record.equal_steps_mean; }},
           {.name = "nodes",
            .description = "of the axis: both signs and the linear table",
            .cell = [](const Record& record) { return record.axis.node_count(); }},
