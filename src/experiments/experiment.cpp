@@ -276,8 +276,8 @@ void need_transfers(const Experiment& experiment) {
 /// Refuses an experiment that lacks what a measure needs; `place` is where the experiment asks for it.
 void refuse_lacks(const Needs& needs, const Experiment& experiment, const JsonReader& place) {
   if (needs.schemes || needs.signal_schemes) need_schemes(experiment);
-  if (needs.signal_schemes) need_signal_schemes(experiment);
   if ((needs.schemes || needs.signal_schemes) && !needs.takes_programs) refuse_programs(experiment, place);
+  if (needs.signal_schemes) need_signal_schemes(experiment);
   if (needs.usable_samplings) need_usable_samplings(experiment, place);
   if (needs.transfers) need_transfers(experiment);
 }

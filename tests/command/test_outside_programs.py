@@ -8,6 +8,7 @@ import sys
 import time
 import unittest
 
+import support
 import test_images
 import test_render
 from support import PROGRAM, RAY, ProgramTest, changed
@@ -106,7 +107,7 @@ class Vectors(OutsideTest):
         self.assertNotIn("programs", result["provenance"])
 
     def test_bad_answers_are_refused(self):
-        self.assertRegex(self.why("nonsense"), "its answer: line 1: found 1 fields; id,r,g,b,opacity is allowed")
+        self.assertRegex(self.why("nonsense"), "its answer: line 1: found 2 fields; id,r,g,b,opacity is allowed")
         self.assertRegex(self.why("nothing"), "its answer: found no lines")
         self.assertRegex(self.why("unknown"), "found the id 'no_such_ray'")
 
@@ -163,7 +164,7 @@ class Vectors(OutsideTest):
         self.fail("the program is still there")
 
     def test_programs_are_for_measures_of_answers(self):
-        document = {**EXPERIMENT, "schemes": [self.program("zeros")], "measures": [{"kind": "integral_orders", "order": 1}]}
+        document = changed(support.EXPERIMENT, "/schemes", ["order1", self.program("zeros")])
         self.write("outside.json", json.dumps(document))
         self.assert_refused(self.run_program("run", "outside.json"), "/measures/0: found a measure of schemes beside the program zeros")
 
@@ -235,7 +236,7 @@ class Images(OutsideTest):
         self.assert_refused(self.render(self.program("half")), "/scheme: found a program")
 
     def test_bad_images_are_refused(self):
-        for name, why in (("small", "found 3 x 2 pixels"), ("colours", "without opacity"), ("infinite", "its answer"), ("words", "its answer: found no header")):
+        for name, why in (("small", "found 3 x 2 pixels"), ("colours", "without opacity"), ("infinite", "its answer"), ("words", "its answer: no header")):
             done = self.render(self.program(name), "--programs")
             self.assertEqual(done.returncode, 2, name)
             self.assertIn(why, done.stderr.decode())

@@ -44,7 +44,7 @@ def version():
         said = subprocess.run(["povray", "--version"], capture_output=True, text=True)
     except FileNotFoundError:
         questions.missing("povray is missing: the package povray has it")
-    return next((line.strip() for line in (said.stdout + said.stderr).splitlines() if line.strip()), "POV-Ray")
+    return next(line.strip() for line in (said.stdout + said.stderr).splitlines() if line.strip().startswith("POV-Ray"))
 
 
 if __name__ == "__main__":

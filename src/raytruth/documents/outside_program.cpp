@@ -7,7 +7,7 @@
 #include <poll.h>
 #include <spawn.h>
 #include <sys/mman.h>
-#include <sys/pidfd.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <boost/algorithm/string/trim.hpp>
@@ -231,7 +231,8 @@ class Run {
 
   /// Reads what it says until it has ended. What it started and left behind does not count.
   void follow() {
-    const Descriptor end(static_cast<int>(::pidfd_open(process_, 0)));
+    // By number: the header of glibc 2.36 declares pidfd_open as a C++ function.
+    const Descriptor end(static_cast<int>(::syscall(SYS_pidfd_open, process_, 0)));
     if (!end.is_open()) refuse("nothing tells when it ends");
     for (bool has_ended = false; !has_ended;) {
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline_ - Clock::now()).count();
