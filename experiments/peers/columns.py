@@ -1,8 +1,8 @@
 """Any renderer of voxels answers vectors: a ray becomes a volume of 3 x 3 columns, seen along z through one pixel.
 
-    columns.py ADAPTER [WORD...] [step=VOXELS] < vectors.json > answers.csv
+    columns.py ADAPTER [WORD...] [samples=1024] < vectors.json > answers.csv
 
-ADAPTER is a module here that has render(scene, words, options).
+ADAPTER is a module here that has render(scene, words, options). It samples every ray, and every slab, so often.
 """
 
 import importlib
@@ -33,9 +33,10 @@ def main():
     options = questions.words_of(word for word in sys.argv[2:] if "=" in word)
     if words == ["--version"]:
         return print(adapter.version())
-    answers = {}
+    samples, answers = float(options.pop("samples", 1024)), {}
     for vector in questions.associated(questions.ask()["vectors"]):
-        image = adapter.render(scene_of(vector), words, options)
+        scene = scene_of(vector)
+        image = adapter.render(scene, words, {**options, "step": (len(scene["voxels"]) - 1) / samples})
         if image is not None:
             answers[vector["id"]] = image[2, 2]
     questions.answer_vectors(answers)

@@ -30,7 +30,7 @@ struct OutsideRefusal : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The same where this machine lacks the program, or something that it needs.
+/// Its reason: this machine lacks the program, or something that it needs.
 struct OutsideMissing : OutsideRefusal {
   using OutsideRefusal::OutsideRefusal;
 };

@@ -34,7 +34,7 @@ std::string nrrd_of(const std::vector<double>& samples) {
   return file;
 }
 
-/// The same matter where lengths are in units of `unit`.
+/// A transfer function of the same matter where lengths are in units of `unit`.
 PiecewiseLinear in_units(const PiecewiseLinear& transfer, Emission emission, double unit) {
   const double of_color = emission == Emission::plain ? unit : 1;
   if (transfer.is_linear_in_opacity()) {

@@ -87,7 +87,7 @@ Certified truth_of(const ConformanceVector& vector);
 /// The vectors of a seed with their certified answers, as experiments/schemas/vectors.json describes them.
 nlohmann::ordered_json vectors_json(std::uint64_t seed, VectorForm form = VectorForm::second);
 
-/// The same document of vectors that were made of those of the seed.
+/// Such a document of vectors that were made of those of the seed.
 nlohmann::ordered_json vectors_json(std::uint64_t seed, VectorForm form, const std::vector<ConformanceVector>& vectors);
 
 }  // namespace raytruth

@@ -78,7 +78,7 @@ std::vector<LevelScore> score(const std::vector<ScoredVector>& vectors);
 /// what was found, what is allowed.
 std::map<std::string, Answer> read_answers(const std::string& path, std::vector<std::string>& warnings);
 
-/// The same of a file's text; `name` is what messages call it.
+/// Reads a file's text likewise; `name` is what messages call it.
 std::map<std::string, Answer> answers_in(std::string_view text, const std::string& name,
                                          std::vector<std::string>& warnings);
 
