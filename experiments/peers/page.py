@@ -47,7 +47,7 @@ def vectors_table():
 
 
 def images_rows():
-    return [row for row in load("results/peers_images.json")["rows"] if row.get("against") == "certified" and row["frame"] == "linear" and row.get("line") is None and row["status"] == "ok"]
+    return [row for row in load("results/peers_images.json")["rows"] if row.get("against") == "certified" and row.get("frame") == "linear" and row.get("line") is None and row["status"] == "ok"]
 
 
 def images_table(view):
