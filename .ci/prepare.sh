@@ -10,6 +10,16 @@ packages_to_experiment=(python3-matplotlib mricron-data)
 packages_to_test=(libbenchmark-dev libgl1-mesa-dri libgsl-dev libgtest-dev python3-jsonschema python3-skimage)
 packages_to_tidy=(clang-tidy-16)
 
+# packages_of_peers NAME: what another renderer needs; only experiments/peers/run --install installs them.
+packages_of_peers() {
+  case $1 in
+    vtk) echo python3-vtk9 xvfb xauth ;;
+    miter) echo teem-apps python3-numpy ;;
+    vtkjs) echo chromium nodejs python3-numpy ;;
+    povray) echo povray ;;
+  esac
+}
+
 say() { printf '%s\n' "$*" >&2; }
 
 # fail STATUS MESSAGE

@@ -76,7 +76,7 @@ void merge_quick(Json& document) {
                           document["plot"].contains("panels") && !document["plot"]["panels"].empty();
   for (const auto& [column, list, key] : {std::tuple{"field", "fields", "name"},
                                           {"transfer", "transfer_functions", "name"},
-                                          {"scheme", "schemes", ""},
+                                          {"scheme", "schemes", "name"},
                                           {"measure", "measures", "kind"}}) {
     std::vector<Json> lost = words_in(full, list, key);
     const std::vector<Json> kept = words_in(document, list, key);
@@ -112,6 +112,13 @@ std::string read_name(const JsonReader& json) {
   if (name.find_first_not_of(letters) != std::string::npos || name.front() == '.')
     json.refuse_value("a name of letters, digits, '_', '-' and '.', not beginning with '.',");
   return name;
+}
+
+OutsideProgram read_program(const JsonReader& json) {
+  OutsideProgram program = read_outside_program(json);
+  if (find_named(catalogue::integral_schemes(), read_name(json.at("name"))) != nullptr)
+    json.at("name").refuse_value("a name that no scheme has");
+  return program;
 }
 
 /// The extinction of the studies' transfer functions is such that a ray that meets the largest one all along has the
@@ -236,7 +243,15 @@ std::vector<Check> read_checks(const JsonReader& json, const RowNames& names) {
 }
 
 void need_schemes(const Experiment& experiment) {
-  if (experiment.schemes.empty()) experiment.json.refuse("no schemes", "a member \"schemes\"");
+  if (experiment.schemes.empty() && experiment.programs.empty())
+    experiment.json.refuse("no schemes", "a member \"schemes\"");
+}
+
+/// Programs answer whole rays and images; other measures look into schemes.
+void refuse_programs(const Experiment& experiment, const JsonReader& measure) {
+  if (!experiment.programs.empty())
+    measure.refuse(fmt::format("a measure of schemes beside the program {}", experiment.programs.front().name),
+                   "conformance");
 }
 
 void need_signal_schemes(const Experiment& experiment) {
@@ -261,6 +276,7 @@ void need_transfers(const Experiment& experiment) {
 /// Refuses an experiment that lacks what a measure needs; `place` is where the experiment asks for it.
 void refuse_lacks(const Needs& needs, const Experiment& experiment, const JsonReader& place) {
   if (needs.schemes || needs.signal_schemes) need_schemes(experiment);
+  if ((needs.schemes || needs.signal_schemes) && !needs.takes_programs) refuse_programs(experiment, place);
   if (needs.signal_schemes) need_signal_schemes(experiment);
   if (needs.usable_samplings) need_usable_samplings(experiment, place);
   if (needs.transfers) need_transfers(experiment);
@@ -312,6 +328,7 @@ Experiment read_experiment(const std::string& path, std::string_view profile, st
                         .emission = Emission::associated,
                         .samplings = {},
                         .schemes = {},
+                        .programs = {},
                         .measures = {},
                         .claims = {},
                         .checks = {},
@@ -350,9 +367,15 @@ Experiment read_experiment(const std::string& path, std::string_view profile, st
                fmt::format("{} {}", experiment.samplings.back().kind, experiment.samplings.back().step.value_or(0)));
   }
   if (const auto schemes = json.find("schemes"))
-    for (const JsonReader& scheme : schemes->items())
-      add_unique(names.schemes, scheme, scheme.word(names_of(catalogue::integral_schemes())));
-  experiment.schemes = names.schemes;
+    for (const JsonReader& scheme : schemes->items()) {
+      if (is_outside_program(scheme)) {
+        experiment.programs.push_back(read_program(scheme));
+        add_unique(names.schemes, scheme.at("name"), experiment.programs.back().name);
+        continue;
+      }
+      experiment.schemes.push_back(scheme.word(names_of(catalogue::integral_schemes())));
+      add_unique(names.schemes, scheme, experiment.schemes.back());
+    }
   for (const JsonReader& measure : measure_items) {
     const Measure& found = measure_of(measure);
     add_unique(names.measures, measure.at("kind"), std::string(found.name));

@@ -3,6 +3,7 @@
 #include "experiments/verdict.hpp"
 #include "raytruth/documents/field_document.hpp"
 #include "raytruth/documents/json/json_reader.hpp"
+#include "raytruth/documents/outside_program.hpp"
 #include "raytruth/gl/device.hpp"
 #include "raytruth/schemes/sampling.hpp"
 #include "raytruth/transfer/emission.hpp"
@@ -64,12 +65,14 @@ struct Experiment {
   Emission emission = Emission::associated;
   std::vector<Sampling> samplings;
   std::vector<std::string> schemes;
+  std::vector<OutsideProgram> programs;  ///< named among the schemes
   std::vector<std::shared_ptr<const AskedMeasure>> measures;
   std::vector<Claim> claims;
   std::vector<Check> checks;
   JsonReader json;                         ///< the whole document, profile merged in, defaults filled in
   std::vector<std::string> warnings = {};  ///< one line each
   GlPlatform gl = GlPlatform::osmesa;      ///< for measures that run shaders
+  bool runs_programs = false;              ///< whether what names a program may run it; else its rows are refused
 };
 
 /// What `--gl` and an experiment's "gl" may say.

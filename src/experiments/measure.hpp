@@ -44,6 +44,7 @@ class AskedMeasure {
 /// What a measure needs an experiment to state; one that lacks it is refused.
 struct Needs {
   bool schemes = false;
+  bool takes_programs = false;    ///< schemes may be programs from outside
   bool signal_schemes = false;    ///< schemes, all of which approximate the signal: those of catalogue::Schemes
   bool usable_samplings = false;  ///< samplings that all of these can use
   bool transfers = false;         ///< transfer functions

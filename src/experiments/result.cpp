@@ -154,6 +154,7 @@ Json to_json(const Provenance& provenance) {
   json["started"] =
       fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(provenance.started)));
   if (provenance.resumed) json["resumed"] = true;
+  if (provenance.programs) json["programs"] = true;
   if (provenance.gl)
     json["gl"] = {{"platform", provenance.gl->platform},
                   {"vendor", provenance.gl->vendor},

@@ -26,6 +26,7 @@ struct Provenance {
   std::chrono::system_clock::time_point started;
   bool resumed = false;
   std::optional<GlIdentity> gl = {};  ///< what ran the shaders
+  bool programs = false;              ///< whether programs from outside were allowed to run
 };
 
 /// What decides about the bytes of rows besides the experiment: version, commit, compiler, flags, cpu.

@@ -172,6 +172,7 @@ std::optional<Json> finished_result(const std::filesystem::path& file, const Jso
     for (const auto& [key, value] : run.at("build").items())
       if (!origin.contains(key) || origin.at(key) != value) return {};
     if (result.at("experiment") != run.at("experiment")) return {};
+    if (origin.contains("programs") != run.contains("programs")) return {};
     return result;
   } catch (const InputError&) {
     return {};  // no result at all: to be replaced
@@ -182,7 +183,8 @@ std::optional<Json> finished_result(const std::filesystem::path& file, const Jso
 
 Json run_experiment(const Experiment& experiment, const RunRequest& request, const std::filesystem::path& file,
                     RunObserver& observer) {
-  const Json run{{"raytruth", "journal/1"}, {"build", build_identity()}, {"experiment", experiment.json.json()}};
+  Json run{{"raytruth", "journal/1"}, {"build", build_identity()}, {"experiment", experiment.json.json()}};
+  if (experiment.runs_programs) run["programs"] = true;
   if (request.resume)
     if (auto finished = finished_result(file, run)) return *finished;
 
@@ -201,7 +203,8 @@ Json run_experiment(const Experiment& experiment, const RunRequest& request, con
                               .seconds = seconds,
                               .started = start,
                               .resumed = is_resumed,
-                              .gl = gl};
+                              .gl = gl,
+                              .programs = experiment.runs_programs};
   Json result = make_result(experiment, provenance, findings.fields, findings.rows);
   if (!file.empty()) write_whole(file, result_text(result));
   journal.remove();

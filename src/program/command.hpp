@@ -55,6 +55,8 @@ class CommandOptions {
             const std::string& summary);
   void positive_number(const std::string& name, double& value, const std::string& summary);
 
+  /// A whole number from 1 on.
+  void count(const std::string& name, std::int64_t most, std::int64_t& value, const std::string& summary);
   void positive_number(const std::string& name, std::optional<double>& value, const std::string& summary);
   /// Two numbers, or none.
   void pair(const std::string& name, const std::string& type, std::vector<double>& values, const std::string& summary);
@@ -64,6 +66,7 @@ class CommandOptions {
   // Options that several commands have.
 
   void threads(int& value);
+  void programs(bool& value);
   void data(VolumeOptions& volumes);
   void nan(VolumeOptions& volumes);
   void time_step(std::optional<std::int64_t>& value);

@@ -1,6 +1,7 @@
 #include "experiments/output.hpp"
 #include "program/command.hpp"
 #include "raytruth/documents/case.hpp"
+#include "raytruth/documents/conformance/outside_answers.hpp"
 #include "raytruth/documents/scene_case.hpp"
 #include "raytruth/documents/slab_case.hpp"
 
@@ -19,7 +20,21 @@ namespace {
 struct EvalOptions {
   std::string file;
   int threads = 0;
+  bool runs_programs = false;
   VolumeOptions volumes;
+};
+
+/// Answers a case of any kind.
+struct Evaluation {
+  bool runs_programs;
+
+  nlohmann::ordered_json operator()(const Case& ray) const {
+    nlohmann::ordered_json answer = evaluate(ray);
+    add_outside_answers(ray, runs_programs, answer);
+    return answer;
+  }
+  nlohmann::ordered_json operator()(const SlabCase& slab) const { return evaluate(slab); }
+  nlohmann::ordered_json operator()(const SceneFile& scene) const { return evaluate(scene, runs_programs); }
 };
 
 int evaluate_cases(const EvalOptions& options) {
@@ -51,7 +66,7 @@ int evaluate_cases(const EvalOptions& options) {
   std::vector<std::string> errors(cases.size());
   tbb::parallel_for(std::size_t{0}, cases.size(), [&](std::size_t i) {
     try {
-      answers[i] = std::visit([](const auto& asked) { return evaluate(asked); }, cases[i]);
+      answers[i] = std::visit(Evaluation{options.runs_programs}, cases[i]);
       for (std::size_t warning = first_warnings[i]; warning < first_warnings[i + 1]; ++warning)
         answers[i]["warnings"].push_back(warnings[warning]);
     } catch (const InputError& error) {
@@ -69,6 +84,7 @@ std::function<int()> describe(CommandOptions& add) {
   const auto options = std::make_shared<EvalOptions>();
   add.operand("case", options->file, "JSON file; '-' is standard input");
   add.threads(options->threads);
+  add.programs(options->runs_programs);
   add.data(options->volumes);
   add.nan(options->volumes);
   return [options] { return evaluate_cases(*options); };
@@ -86,7 +102,10 @@ const Command eval_command{
         "proven. That of lit\n"
         "scenes is an estimate: `measured_radius`. Rays through volumes and scenes state where the volume\n"
         "ends, their \"border\": \"half_voxel\" beyond the outermost centres (the default) or at the\n"
-        "\"voxel_centres\".",
+        "\"voxel_centres\".\n"
+        "\n"
+        "A scheme may be a program, {\"program\": [\"python3\", \"mine.py\"], \"name\": \"mine\"}: of a ray it reads\n"
+        "vectors as JSON and writes CSV, of a scene it reads that and writes a .npy. It runs with --programs only.",
     .describe = describe};
 
 }  // namespace raytruth

@@ -3,6 +3,7 @@
 #include "program/progress_bar.hpp"
 #include "raytruth/core/error.hpp"
 #include "raytruth/core/one_line.hpp"
+#include "raytruth/documents/outside_image.hpp"
 #include "raytruth/documents/rendering_json.hpp"
 #include "raytruth/documents/scene_document.hpp"
 #include "raytruth/images/image_file.hpp"
@@ -27,6 +28,7 @@ struct RenderOptions {
   bool is_binary64 = false;            ///< a .npy holds binary64
   std::optional<std::string> opacity;  ///< a transfer function's file, whose opacities are taken
   bool ignores_gradient_opacity = false;
+  bool runs_programs = false;
   VolumeOptions volumes;
 };
 
@@ -40,6 +42,21 @@ Rendering render(const Renderer& renderer) {
     for (const std::size_t now = parts * done / of; told < now; ++told) bar.advance();
     bar.show("rendering");
   });
+}
+
+/// The image of the program that the scene names in place of a scheme.
+OutsideImage image_by_program(const SceneFile& scene, const JsonReader& place, bool runs_programs) {
+  if (!runs_programs) place.refuse("a program", "a scheme, or the option --programs,");
+  const auto blame = [&](const OutsideRefusal& refusal) {
+    return fmt::format("{}: {}: {}", place.place(), one_line(scene.program->name), refusal.what());
+  };
+  try {
+    return outside_image(*scene.program, scene.scene, scene.document);
+  } catch (const OutsideMissing& refusal) {
+    throw MissingError(blame(refusal));
+  } catch (const OutsideRefusal& refusal) {
+    throw InputError(blame(refusal));
+  }
 }
 
 /// The radii of `reference` beside its image: those of the numbers that the file holds. A picture of 8 bits has none.
@@ -87,14 +104,23 @@ int render_scene(const RenderOptions& options) {
   for (const std::string& warning : scene.warnings) say(warning);
   const auto size = scene.scene.camera.size;
   scene.scene.covers_camera = true;
-  nlohmann::ordered_json result{
-      {"image", file.filename().string()},     {"size", size},
-      {"scheme", scene.scene.scheme},          {"volume", std::move(scene.volume)},
-      {"border", name_of(scene.scene.border)}, {"transfer_function", std::move(scene.transfer_function)}};
+  nlohmann::ordered_json result{{"image", file.filename().string()},
+                                {"size", size},
+                                {"scheme", scene.program ? scene.program->name : scene.scene.scheme},
+                                {"volume", std::move(scene.volume)},
+                                {"border", name_of(scene.scene.border)},
+                                {"transfer_function", std::move(scene.transfer_function)}};
   if (!scene.fitted_camera.is_null()) result["fitted_camera"] = scene.fitted_camera;
   if (!scene.warnings.empty()) result["warnings"] = scene.warnings;
-  const Rendering rendering = json.at("scheme").blame_for([&] { return render(Renderer(std::move(scene.scene))); });
   if (file.extension() == ".png") result["encoding"] = options.is_linear ? "linear" : "sRGB";
+  if (scene.program) {
+    const OutsideImage found = image_by_program(scene, json.at("scheme"), options.runs_programs);
+    if (found.version) result["version"] = *found.version;
+    write_whole(file, image_file(found.image, file.extension().string(), transfer, numbers));
+    print(result.dump(2) + "\n");
+    return 0;
+  }
+  const Rendering rendering = json.at("scheme").blame_for([&] { return render(Renderer(std::move(scene.scene))); });
   write_whole(file, image_file(rendering.image, file.extension().string(), transfer, numbers));
   if (!rendering.radii.empty()) write_radii(rendering, file, options.is_binary64, result);
   print(result.dump(2) + "\n");
@@ -107,6 +133,7 @@ std::function<int()> describe(CommandOptions& add) {
   add.required_text("-o", "FILE", options->file,
                     "The image: .png (8 bits, over black), .pfm or .npy (linear light, binary32)");
   add.threads(options->threads);
+  add.programs(options->runs_programs);
   add.flag("--linear", options->is_linear, "Write linear light into a .png, instead of sRGB");
   add.flag("--binary64", options->is_binary64, "Write binary64 into a .npy: all digits of a certified image");
   add.text("--opacity", "FILE", options->opacity,
@@ -138,7 +165,11 @@ const Command render_command{
         "\n"
         "Where the volume ends is a convention, which a scene's \"border\" says and the answer states:\n"
         "\"half_voxel\" (the default), half a voxel beyond the centres of its outermost voxels, or\n"
-        "\"voxel_centres\", at these centres, as VTK's mappers and Teem have it.",
+        "\"voxel_centres\", at these centres, as VTK's mappers and Teem have it.\n"
+        "\n"
+        "The scheme may be a program, {\"program\": [\"python3\", \"mine.py\"], \"name\": \"mine\"}: it reads the "
+        "scene\n"
+        "as JSON and writes a .npy; with --programs only.",
     .describe = describe};
 
 }  // namespace raytruth

@@ -32,6 +32,7 @@ struct RunOptions {
   std::optional<std::string> gl;
   bool check = false;
   bool resume = false;
+  bool runs_programs = false;
   VolumeOptions volumes;
 };
 
@@ -105,6 +106,7 @@ std::string notice(const RunOptions& options) {
   if (!options.volumes.data.empty()) command += " --data " + options.volumes.data;
   if (options.volumes.memory_limit) command += fmt::format(" --memory-limit {}", *options.volumes.memory_limit);
   if (options.check) command += " --check";
+  if (options.runs_programs) command += " --programs";
   command += fmt::format(" -o {} --resume", *options.folder);
   return fmt::format("\nraytruth: interrupted; what is done is kept, and this goes on with it: {}\n",
                      one_line(command));
@@ -139,6 +141,7 @@ int run_experiments(const RunOptions& options) {
   for (const std::string& path : files) {
     Experiment experiment = read_experiment(path, options.profile, options.seed, options.gl);
     for (const std::string& warning : experiment.warnings) say(warning);
+    experiment.runs_programs = options.runs_programs;
     for (const Experiment& other : experiments)
       if (other.name == experiment.name) experiment.json.at("name").refuse_value("one experiment of each name");
     experiments.push_back(std::move(experiment));
@@ -177,6 +180,7 @@ std::function<int()> describe(CommandOptions& add) {
   add.word("--gl", options->gl, {"osmesa", "egl"},
            "Run shaders by osmesa or by egl, a GPU's driver (default: the experiment's)");
   add.flag("--check", options->check, "Exit with 1 if a bound that the experiment states does not hold");
+  add.programs(options->runs_programs);
   add.flag("--resume", options->resume, "Finish an interrupted run; needs -o");
   add.data(options->volumes);
   return [options] { return run_experiments(*options); };

@@ -166,6 +166,10 @@ void CommandOptions::flag(const std::string& name, bool& value, const std::strin
   parser_.add_flag(name, value, summary);
 }
 
+void CommandOptions::programs(bool& value) {
+  flag("--programs", value, "Run the programs that the file names as schemes; else they are refused");
+}
+
 void CommandOptions::threads(int& value) {
   parser_.add_option("-j", value, "Threads to use (default: all cores)")
       ->type_name("N")
@@ -189,6 +193,11 @@ void CommandOptions::nan(VolumeOptions& volumes) {
       .add_option("--nan", volumes.nan,
                   "Give voxels of files that are NaN this value (default: such files are refused)")
       ->type_name("VALUE");
+}
+
+void CommandOptions::count(const std::string& name, std::int64_t most, std::int64_t& value,
+                           const std::string& summary) {
+  parser_.add_option(name, value, summary)->type_name("N")->check(CLI::Range(std::int64_t{1}, most));
 }
 
 void CommandOptions::time_step(std::optional<std::int64_t>& value) {

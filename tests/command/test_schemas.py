@@ -63,7 +63,7 @@ BEYOND_EXPERIMENT_SCHEMA = re.compile(
       /fields/\d/name\ =\ "word"  # the checks name the fields
     | /rays/length\ =\ 1e\+300
     | .*/rows?(\ =\ {"a":\ 1}|/unknown)
-    | .*/rows?/field(/\d)?\ =\ "word"
+    | .*/rows?/(field|scheme)(/\d)?\ =\ "word"
     | /published/0/(measured|low|high)\ =\ "word"
     | .*/column\ =\ "word"
     | /plot/panels/0/(group|series)\ =\ "word"
@@ -141,6 +141,27 @@ class Agreement(ProgramTest):
             self.assertTrue(schema.is_valid(experiment))
             self.assertTrue(self.program_accepts("run", experiment))
             self.assert_agreement("run", schema, mutations(experiment), BEYOND_EXPERIMENT_SCHEMA)
+
+    def test_programs(self):
+        """In place of schemes; nothing is run."""
+        program = {"program": ["cat", "x"], "name": "mine", "version": ["cat"], "package": "coreutils", "seconds": 10, "megabytes": 1}
+        ray = changed(RAY, "/schemes", ["order1", program])
+        scene = {**test_render.SCENE, "scheme": program}
+        experiment = {key: STUDY[key] for key in ("raytruth", "name", "question", "source")} | {
+            "schemes": ["order1", program], "measures": [{"kind": "conformance", "intervals": 2, "emission": "associated", "against": ["samples"]}]}
+        for name, command, document, place in (("case", "eval", ray, "/schemes/1"), ("case", "eval", scene, "/scheme"), ("experiment", "run", experiment, "/schemes/1")):
+            self.assertTrue(validator(name).is_valid(document))
+            self.assertTrue(self.program_accepts(command, document))
+            said = [(what, mutation) for what, mutation in mutations(document) if what.startswith(place + "/")]
+            self.assertGreater(len(said), 40)
+            self.assert_agreement(command, validator(name), said, re.compile("none"))
+        for wrong in ("ray", ["ray", "ray"], ["noise"], []):
+            document = changed(experiment, "/measures/0/against", wrong)
+            self.assertFalse(validator("experiment").is_valid(document))
+            self.assertFalse(self.program_accepts("run", document))
+        elsewhere = changed(EXPERIMENT, "/schemes", ["order1", program])
+        self.assertFalse(validator("experiment").is_valid(elsewhere))
+        self.assertFalse(self.program_accepts("run", elsewhere))
 
     def test_scenes(self):
         schema = validator("scene")

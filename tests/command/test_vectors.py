@@ -3,6 +3,7 @@
 import bisect
 import json
 import math
+import struct
 import unittest
 from fractions import Fraction
 
@@ -162,6 +163,58 @@ class Vectors(ProgramTest):
         self.assert_refused(self.run_program("vectors", "-o", "absent/v.json"), "absent/v.json: ", "cannot be written", code=4)
         self.assert_refused(self.run_program("vectors", "--seed", "-1"), "--seed")
         self.assert_refused(self.run_program("vectors", "--seed", "x"), "--seed")
+
+
+class Volumes(ProgramTest):
+    """`raytruth vectors --volumes`: rays as renderers of voxels can be asked them."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.committed = {vector["id"]: vector for vector in json.loads(COMMITTED.read_text())["vectors"]}
+
+    def written(self, intervals=8):
+        self.assertEqual(self.output_of("vectors", "--volumes", "rays", "--intervals", intervals), "")
+        document = json.loads((self.folder / "rays/vectors.json").read_text())
+        jsonschema.Draft202012Validator(SCHEMA).validate(document)
+        return {vector["id"]: vector for vector in document["vectors"]}
+
+    def test_every_vector_is_there(self):
+        vectors = self.written()
+        self.assertEqual(list(vectors), list(self.committed))
+        for name in vectors:
+            self.assertTrue((self.folder / f"rays/{name}.json").is_file())
+            count = 2 if "slab" in self.committed[name] else 9
+            header = (self.folder / f"rays/{name}.nrrd").read_bytes().split(b"\n\n")[0]
+            self.assertIn(f"sizes: 3 3 {count}".encode(), header)
+
+    def test_pixels_are_what_render_certifies(self):
+        """Two ways to one number: ball arithmetic along the ray, and the renderer through the volume."""
+        vectors = self.written()
+        for level in {vector["level"] for vector in vectors.values()}:
+            for name in (f"{level}_ray_01", f"{level}_ray_02"):
+                answer = self.json_of("render", f"rays/{name}.json", "--binary64", "-o", "image.npy")
+                image = (self.folder / "image.npy").read_bytes()[-5 * 5 * 4 * 8 :]
+                pixels = [struct.unpack_from("<4d", image, 32 * i) for i in range(25)]
+                reference = vectors[name]["reference"]
+                # The rays of the camera are rounded, and some pixels' are not as deep as others' by as much.
+                allowed = answer["error_bound"] + reference["error_bound"] + 1e-12
+                for pixel in pixels:
+                    for found, true in zip(pixel, [*reference["color"], reference["opacity"]]):
+                        self.assertLessEqual(abs(found - true), allowed, name)
+
+    def test_slabs_keep_their_truth(self):
+        """They are linear between their two samples already: the same slab, in other units of length."""
+        vectors = self.written()
+        for name, vector in self.committed.items():
+            if "slab" not in vector or vector["emission"] == "plain":
+                continue  # what plain matter sends out is per unit of length
+            true, found = vector["reference"], vectors[name]["reference"]
+            for x, y in zip([*true["color"], true["opacity"]], [*found["color"], found["opacity"]]):
+                self.assertAlmostEqual(x, y, delta=1e-12 + 1e-9 * abs(x), msg=name)
+
+    def test_bad_counts_are_refused(self):
+        for count in ("0", "4097", "x"):
+            self.assertEqual(self.run_program("vectors", "--volumes", "rays", "--intervals", count).returncode, 2)
 
 
 class Scores(ProgramTest):

@@ -12,7 +12,9 @@ Scene read_drawing(nlohmann::ordered_json drawing, const JsonReader& place) {
   drawing["camera"] = {{"eye", {0, 0, 1}}, {"target", {0, 0, 0}}, {"up", {0, 1, 0}}, {"height", 1}, {"size", {1, 1}}};
   const JsonReader reader = JsonReader::from_json(std::move(drawing), place);
   try {
-    return read_scene(reader, {}).scene;
+    SceneFile read = read_scene(reader, {});
+    if (read.program) reader.at("scheme").refuse("a program", "one of the schemes");
+    return std::move(read.scene);
   } catch (const InputError& error) {
     // It names the file, and behind it the place in the scene.
     throw InputError(place.place() + std::string(error.what()).substr(reader.place().size() - 1));

@@ -4,6 +4,7 @@
 #include "measures/images/skipped_slabs.hpp"
 #include "measures/images/studied_view.hpp"
 #include "measures/images/surface_depths.hpp"
+#include "raytruth/documents/outside_image.hpp"
 #include "raytruth/images/image_error.hpp"
 #include "raytruth/metrics/banding.hpp"
 #include "raytruth/metrics/slab_banding.hpp"
@@ -39,6 +40,7 @@ struct Variant {
   Scene drawing;                                 ///< its members that say how to render; the others have no meaning
   std::optional<FieldKind> reconstruction = {};  ///< none: the view's
   Json scene = {};                               ///< as the experiment and the view say it
+  std::optional<OutsideProgram> program = {};    ///< that renders it, in place of the drawing's scheme
 };
 
 /// What is looked at; its truth is the certified image, or, where it is lit, that of `reference`.
@@ -82,11 +84,12 @@ std::vector<std::string_view> with_certified(std::vector<std::string_view> names
 
 View read_view(const Experiment& experiment, const JsonReader& json, const std::array<std::int64_t, 2>& size,
                const std::vector<View>& before) {
-  json.only({"name", "field", "transfer", "camera", "reconstruction", "shading"});
+  json.only({"name", "field", "transfer", "camera", "reconstruction", "border", "shading"});
   StudiedView seen = read_studied_view(experiment, json, size, with_certified(names_of_views(before)));
   Json truth{{"scheme", "reference"}};
   const auto shading = json.find("shading");
   if (shading) truth["shading"] = shading->json();
+  if (const auto border = json.find("border")) truth["border"] = border->json();
   Scene drawing = read_drawing(truth, json);
   View view{.seen = std::move(seen),
             .truth = {.name = std::string(certified), .drawing = std::move(drawing), .scene = std::move(truth)}};
@@ -101,7 +104,7 @@ View read_view(const Experiment& experiment, const JsonReader& json, const std::
 
 /// Reads what is a scene but for its name, the views that it is for, and what these say.
 Variant read_variant(const JsonReader& json, const View& view) {
-  for (const char* const of_view : {"volume", "repair", "transfer_function", "emission", "camera"})
+  for (const char* const of_view : {"volume", "repair", "border", "transfer_function", "emission", "camera"})
     if (const auto found = json.find(of_view)) found->refuse(fmt::format("a {}", of_view), "what the view leaves open");
   Json scene = json.json();
   scene.erase("name");
@@ -111,8 +114,18 @@ Variant read_variant(const JsonReader& json, const View& view) {
     if (scene.contains("shading")) shading.merge_patch(scene["shading"]);
     scene["shading"] = std::move(shading);
   }
-  auto drawing = read_drawing(scene, json);
-  Variant variant{.name = json.at("name").text(), .drawing = std::move(drawing), .scene = std::move(scene)};
+  std::optional<OutsideProgram> program;
+  Json rendering = scene;
+  if (is_outside_program(json.at("scheme"))) {
+    program = read_outside_program(json.at("scheme"));
+    rendering["scheme"] = "reference";
+  }
+  auto drawing = read_drawing(std::move(rendering), json);
+  if (program) drawing.scheme = program->name;
+  Variant variant{.name = json.at("name").text(),
+                  .drawing = std::move(drawing),
+                  .scene = std::move(scene),
+                  .program = std::move(program)};
   if (json.find("reconstruction")) variant.reconstruction = variant.drawing.field;
   return variant;
 }
@@ -160,6 +173,7 @@ Options read_options(const Experiment& experiment, const JsonReader& json) {
 Scene scene_of(const View& view, const Variant& variant, const Experiment& experiment, const Grid& grid) {
   Scene scene = scene_of(view.seen, variant.drawing, experiment, grid);
   scene.field = variant.reconstruction.value_or(view.reconstruction);
+  scene.border = view.truth.drawing.border;
   return scene;
 }
 
@@ -207,6 +221,7 @@ struct Comparison {
   const Variant* variant;
   bool is_frame;
   ImageError error;
+  ImageError opacity;  ///< of it alone
   std::optional<ShownError> shown = {};
   std::optional<RelativeError> relative = {};             ///< none where the truth is too uncertain
   std::optional<BandingFound> banding = {};               ///< none of frames, or where it is not asked for
@@ -216,6 +231,7 @@ struct Comparison {
   std::vector<std::optional<double>> gains = {};          ///< dB, by baseline
   std::vector<std::optional<double>> closer_pixels = {};  ///< % of the pixels that differ, by baseline
   std::optional<SkippedSlabs> skipped = {};               ///< where blocks are skipped
+  std::optional<std::string> version = {};                ///< of the program that made the image
 };
 
 /// What a view tells of: its certified image, a comparison, or a line of a picture.
@@ -224,6 +240,7 @@ struct Record {
   std::string transfer;
   std::string variant;
   std::optional<std::string> against;
+  std::optional<std::string> why = {};  ///< a program gave no image
   std::optional<CertifiedImage> truth = {};
   std::optional<Comparison> comparison = {};
   std::optional<PictureLine> picture = {};
@@ -234,6 +251,7 @@ struct Rendered {
   const Variant* variant;
   Image image;
   Image frame;
+  std::optional<std::string> version = {};  ///< of the program that made it
 };
 
 /// Renders a view in all ways, and compares the images.
@@ -245,12 +263,14 @@ class ViewStudy {
         truth_(Renderer(scene_of(view, view.truth, experiment, grid)).render()),
         truth_frame_(stored_frame(truth_.image)) {
     for (const Variant& variant : view.variants) {
-      Image image = Renderer(scene_of(view, variant, experiment, grid)).render().image;
-      Image frame = stored_frame(image);
-      images_.push_back({&variant, std::move(image), std::move(frame)});
+      OutsideImage found = image_by(variant, experiment, grid);
+      if (found.image.pixels.empty()) continue;
+      Image frame = stored_frame(found.image);
+      images_.push_back({&variant, std::move(found.image), std::move(frame), std::move(found.version)});
     }
     if (options.slab_window) depths_ = surface_depths(scene_of(view, view.truth, experiment, grid));
     add_certified();
+    for (const auto& [variant, why] : refused_) add(variant->name, std::string(certified)).why = why;
     for (const Rendered& rendered : images_) add_comparisons(experiment, rendered, grid);
     add_pictures();
   }
@@ -263,6 +283,19 @@ class ViewStudy {
                                        .transfer = view_.seen.transfer.name,
                                        .variant = std::string(variant),
                                        .against = against});
+  }
+
+  /// An image without pixels where a program gives none.
+  OutsideImage image_by(const Variant& variant, const Experiment& experiment, const Grid& grid) {
+    const Scene scene = scene_of(view_, variant, experiment, grid);
+    if (!variant.program) return {Renderer(scene).render().image};
+    try {
+      if (!experiment.runs_programs) throw OutsideRefusal(std::string(why_not_run));
+      return outside_image(*variant.program, scene, variant.scene);
+    } catch (const OutsideRefusal& refusal) {
+      refused_.emplace_back(&variant, refusal.what());
+      return {Image({0, 0})};
+    }
   }
 
   void add_certified() {
@@ -308,8 +341,11 @@ class ViewStudy {
     const auto rmse_of = [&](const Rendered* other) {
       return other != nullptr ? image_error(other->*kind, reference).rmse : 0;
     };
-    Comparison found{
-        .variant = &variant, .is_frame = kind == &Rendered::frame, .error = image_error(rendered.*kind, reference)};
+    Comparison found{.variant = &variant,
+                     .is_frame = kind == &Rendered::frame,
+                     .error = image_error(rendered.*kind, reference),
+                     .opacity = image_error(rendered.*kind, reference, Channels::opacity),
+                     .version = rendered.version};
     const ImageError& error = found.error;
     const ClampedImage shown = clamped(rendered.*kind);
     const ClampedImage shown_reference = clamped(reference);
@@ -420,6 +456,7 @@ class ViewStudy {
   Rendering truth_;
   Image truth_frame_;
   std::vector<Rendered> images_;
+  std::vector<std::pair<const Variant*, std::string>> refused_;  ///< whose programs gave no image, and why
   std::vector<double> depths_;  ///< of the surface, where stripes at slabs' borders are looked for
 };
 
@@ -626,6 +663,43 @@ std::string gain_over(const std::string& baseline) { return "gain_over_" + basel
 std::string closer_than(const std::string& baseline) { return "closer_than_" + baseline; }
 std::string banding_gain_over(const std::string& baseline) { return "banding_gain_over_" + baseline; }
 
+bool has_programs(const Options& options) {
+  return std::any_of(options.views.begin(), options.views.end(), [](const View& view) {
+    return std::any_of(view.variants.begin(), view.variants.end(),
+                       [](const Variant& variant) { return variant.program.has_value(); });
+  });
+}
+
+/// The cell of a linear image's error of opacity.
+CellOf<Record> of_opacity(double ImageError::*member) {
+  return [member](const Record& record) -> std::optional<Value> {
+    if (!record.comparison || record.comparison->is_frame) return std::nullopt;
+    return value_of(record.comparison->opacity.*member);
+  };
+}
+
+/// What a study tells besides in which programs make images.
+Columns<Record> program_columns() {
+  return {{.name = "version",
+           .description = "of the program that made the image, in its words",
+           .cell = [](const Record& record) -> std::optional<Value> {
+             return record.comparison ? cell_if(record.comparison->version.has_value(), record.comparison->version)
+                                      : std::nullopt;
+           }},
+          {.name = "opacity_rmse",
+           .description = "root mean square error of the opacity",
+           .radius = "radius",
+           .cell = of_opacity(&ImageError::rmse)},
+          {.name = "opacity_maximum",
+           .description = "largest error of the opacity",
+           .radius = "radius",
+           .cell = of_opacity(&ImageError::maximum)},
+          {.name = "opacity_bias",
+           .description = "mean error of the opacity",
+           .radius = "radius",
+           .cell = of_opacity(&ImageError::bias)}};
+}
+
 /// What depends on the measure's options is described behind the other columns, but stands among them in the rows.
 void describe_baselines(Columns<Record>& columns, const Options& options) {
   if (options.window)
@@ -716,6 +790,10 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& options
       columns, [](const Record& record) { return record.comparison ? record.comparison->skipped : std::nullopt; },
       skipped_columns());
   append_part(columns, &Record::picture, picture_columns());
+  if (has_programs(options)) {
+    append(columns, program_columns());
+    append_refusal(columns, &Record::why);
+  }
   describe_baselines(columns, options);
   return columns;
 }

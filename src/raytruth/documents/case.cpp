@@ -227,7 +227,10 @@ Case CaseReader::read(const JsonReader& json, std::vector<std::string>& warnings
   check_form(json, "case/1");
   const JsonReader signal = json.at("signal");
   const std::string kind = signal.at("kind").word(names_of(catalogue::signals));
-  Case ray{json, std::nullopt, read_schemes(json.at("schemes"), names_of(catalogue::integral_schemes())), std::nullopt};
+  std::vector<OutsideProgram> programs;
+  Case ray{json, std::nullopt, read_schemes(json.at("schemes"), names_of(catalogue::integral_schemes()), &programs),
+           std::nullopt};
+  ray.programs = std::move(programs);
   if (json.find("sampling") || names_a_scheme(ray)) ray.sampling = read_sampling(json.at("sampling"));
   const bool has_volume = kind == "trilinear" || kind == "tricubic";
   if (const auto transfer = json.find("transfer_function")) {

@@ -2,6 +2,7 @@
 
 #include "raytruth/core/chain.hpp"
 #include "raytruth/documents/json/json_reader.hpp"
+#include "raytruth/documents/outside_program.hpp"
 #include "raytruth/documents/volume_source.hpp"
 #include "raytruth/reference/arb_integral.hpp"
 #include "raytruth/schemes/sampling.hpp"
@@ -36,6 +37,7 @@ struct Case {
   std::variant<PreciseChain<3>, PreciseChain<largest_degree>> precise_signal = {};  ///< where there is no formula
   std::variant<std::monostate, MarschnerLobbRay, AnalyticSignal> formula = {};  ///< that the chain only approximates
   std::optional<Border> border = {};                                            ///< of the volume, if there is one
+  std::vector<OutsideProgram> programs = {};  ///< named among the schemes; `evaluate` leaves them out
 };
 
 /// Reads cases one after the other; keeps the volume that was read last, for the cases of a list often share it.

@@ -23,11 +23,21 @@ Border read_border(const JsonReader& json) {
   return static_cast<Border>(std::find(border_names.begin(), border_names.end(), name) - border_names.begin());
 }
 
-std::vector<std::string> read_schemes(const JsonReader& json, const std::vector<std::string_view>& names) {
+std::vector<std::string> read_schemes(const JsonReader& json, const std::vector<std::string_view>& names,
+                                      std::vector<OutsideProgram>* programs) {
   std::vector<std::string_view> allowed{"reference"};
   allowed.insert(allowed.end(), names.begin(), names.end());
   std::vector<std::string> schemes;
+  std::vector<std::string> taken{allowed.begin(), allowed.end()};
   for (const JsonReader& item : json.items()) {
+    if (programs != nullptr && is_outside_program(item)) {
+      programs->push_back(read_outside_program(item));
+      const std::string& name = programs->back().name;
+      if (std::find(taken.begin(), taken.end(), name) != taken.end())
+        item.at("name").refuse_value("a name that no scheme and no other program has");
+      taken.push_back(name);
+      continue;
+    }
     const std::string scheme = item.word(allowed);
     if (std::find(schemes.begin(), schemes.end(), scheme) != schemes.end()) item.refuse_value("each scheme once");
     schemes.push_back(scheme);

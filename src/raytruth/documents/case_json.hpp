@@ -2,6 +2,7 @@
 
 #include "raytruth/core/vector3.hpp"
 #include "raytruth/documents/json/json_reader.hpp"
+#include "raytruth/documents/outside_program.hpp"
 #include "raytruth/reference/certified.hpp"
 #include "raytruth/schemes/sampling.hpp"
 #include "raytruth/signals/border.hpp"
@@ -27,8 +28,9 @@ Emission read_emission(const JsonReader& json);
 /// The member "border", which says where the volume of a scene or a signal ends: `half_voxel` where there is none.
 Border read_border(const JsonReader& json);
 
-/// Words of the list, each once: "reference" or one of `names`.
-std::vector<std::string> read_schemes(const JsonReader& json, const std::vector<std::string_view>& names);
+/// Words of the list, each once: "reference" or one of `names`. Programs go to `programs`, and are refused without it.
+std::vector<std::string> read_schemes(const JsonReader& json, const std::vector<std::string_view>& names,
+                                      std::vector<OutsideProgram>* programs = nullptr);
 
 nlohmann::ordered_json color_json(const Vector3<double>& color);
 

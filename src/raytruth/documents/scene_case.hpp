@@ -10,6 +10,7 @@ namespace raytruth {
 bool is_scene_case(const JsonReader& json);
 
 /// What `eval` answers of a scene: the errors of its image against that of `reference`, and how well this is known.
-nlohmann::ordered_json evaluate(const SceneFile& asked);
+/// Where a program renders it that must not run, or gives no image, the errors are refused.
+nlohmann::ordered_json evaluate(const SceneFile& asked, bool runs_programs);
 
 }  // namespace raytruth

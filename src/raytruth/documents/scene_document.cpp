@@ -243,8 +243,12 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   json.only({"raytruth", "volume", "repair", "nan", "time_step", "spacing", "border", "reconstruction",
              "transfer_function", "emission", "camera", "scheme", "sampling", "step", "shading", "table",
              "early_termination", "empty_space"});
-  const std::string scheme = read_scheme(json.at("scheme"));
+  std::optional<OutsideProgram> program;
+  if (is_outside_program(json.at("scheme"))) program = read_outside_program(json.at("scheme"));
+  const std::string scheme = program ? "reference" : read_scheme(json.at("scheme"));
   SceneFile result{.scene = {.transfer = PiecewiseLinear(std::vector<TransferPoint>(1)), .scheme = scheme}};
+  if (program) result.document = json.json();
+  result.program = std::move(program);
   Scene& scene = result.scene;
   if (const auto kind = json.find("reconstruction")) scene.field = read_word<FieldKind>(*kind, field_kind_names);
   scene.border = read_border(json);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "raytruth/documents/json/json_reader.hpp"
+#include "raytruth/documents/outside_program.hpp"
 #include "raytruth/documents/volume_source.hpp"
 #include "raytruth/render/scene.hpp"
 
@@ -27,6 +28,8 @@ struct SceneFile {
   nlohmann::ordered_json transfer_function = {};  ///< how it was understood
   nlohmann::ordered_json fitted_camera = {};      ///< as a scene would say it; null: the scene has its own
   std::vector<std::string> warnings = {};         ///< one line each
+  std::optional<OutsideProgram> program = {};     ///< that renders it, in place of the scene's scheme
+  nlohmann::ordered_json document = {};           ///< all of it, for a program
 };
 
 /// Throws InputError.

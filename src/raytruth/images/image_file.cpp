@@ -177,9 +177,11 @@ std::string_view npy_value(std::string_view header, std::string_view key) {
   return end == std::string_view::npos ? std::string_view{} : header.substr(begin, end - begin);
 }
 
-StoredImage read_npy(const std::filesystem::path& file, const std::string& bytes) {
+}  // namespace
+
+StoredImage image_of_npy(const std::filesystem::path& name, const std::string& bytes) {
   const auto refuse_header = [&](std::string_view found) {
-    refuse(file, found,
+    refuse(name, found,
            "a NumPy array of '<f4' or '<f8', C order, shape (height, width) or with 1, 3 or 4 channels, is allowed");
   };
   constexpr std::size_t preamble = 10;
@@ -206,17 +208,15 @@ StoredImage read_npy(const std::filesystem::path& file, const std::string& bytes
   }
   if (sizes.size() == 2) sizes.push_back(1);
   if (sizes.size() != 3 || (sizes[2] != 1 && sizes[2] != 3 && sizes[2] != 4)) refuse_header("another shape");
-  check_size(file, sizes[1], sizes[0]);
+  check_size(name, sizes[1], sizes[0]);
   const auto channels = static_cast<std::size_t>(sizes[2]);
   const std::size_t width_of_number = is_double ? sizeof(double) : sizeof(float);
-  check_bytes(file, bytes.size() - data, static_cast<std::size_t>(sizes[0] * sizes[1]) * channels * width_of_number);
-  return from_numbers(file, sizes[1], sizes[0], channels, [&](std::size_t i) {
+  check_bytes(name, bytes.size() - data, static_cast<std::size_t>(sizes[0] * sizes[1]) * channels * width_of_number);
+  return from_numbers(name, sizes[1], sizes[0], channels, [&](std::size_t i) {
     const char* const from = bytes.data() + data + i * width_of_number;
     return is_double ? read_number<double>(from, false) : double{read_number<float>(from, false)};
   });
 }
-
-}  // namespace
 
 double srgb_of(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
@@ -244,7 +244,7 @@ StoredImage read_image(const std::filesystem::path& file) {
   const std::string bytes = bytes_of(file);
   if (extension == ".png") return from_png(file, bytes);
   if (extension == ".pfm") return read_pfm(file, bytes);
-  if (extension == ".npy") return read_npy(file, bytes);
+  if (extension == ".npy") return image_of_npy(file, bytes);
   refuse(file, "no image", "a name that ends in .png, .pfm or .npy is allowed");
 }
 

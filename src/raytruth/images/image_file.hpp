@@ -47,6 +47,9 @@ struct StoredImage {
 /// or 2^28 pixels in all.
 StoredImage read_image(const std::filesystem::path& file);
 
+/// Reads a .npy file's bytes likewise; `name` is what messages call it.
+StoredImage image_of_npy(const std::filesystem::path& name, const std::string& bytes);
+
 /// Linear light of [0, 1] as sRGB encodes it, and back.
 double srgb_of(double linear);
 double linear_of(double srgb);

@@ -437,6 +437,17 @@ Json lists_json(const SeparateLists& lists) {
 }
 
 Json vector_json(const ConformanceVector& vector) {
+  Json json = question_json(vector);
+  const Certified truth = truth_of(vector);
+  json["reference"] = {{"color", {truth.color[0], truth.color[1], truth.color[2]}},
+                       {"opacity", truth.opacity},
+                       {"error_bound", truth.radius}};
+  return json;
+}
+
+}  // namespace
+
+Json question_json(const ConformanceVector& vector) {
   Json json{{"id", vector.id},
             {"level", vector.level},
             {"emission", vector.emission == Emission::associated ? "associated" : "plain"}};
@@ -450,14 +461,8 @@ Json vector_json(const ConformanceVector& vector) {
   }
   json["transfer_function"] = transfer_function_json(vector.transfer);
   if (vector.lists) json["separate_lists"] = lists_json(*vector.lists);
-  const Certified truth = truth_of(vector);
-  json["reference"] = {{"color", {truth.color[0], truth.color[1], truth.color[2]}},
-                       {"opacity", truth.opacity},
-                       {"error_bound", truth.radius}};
   return json;
 }
-
-}  // namespace
 
 std::vector<VectorLevel> vector_levels(VectorForm form) {
   std::vector<VectorLevel> levels;
@@ -518,6 +523,30 @@ std::vector<ConformanceVector> conformance_vectors(std::uint64_t seed, VectorFor
   return vectors;
 }
 
+std::vector<double> samples_of(const ConformanceVector& vector, std::int64_t intervals) {
+  const auto signal = signal_of(vector);
+  const std::int64_t count = vector.is_slab ? 1 : intervals;
+  std::vector<double> samples;
+  for (std::int64_t i = 0; i <= count; ++i)
+    samples.push_back(signal.value(
+        i == count ? signal.length() : signal.length() * (static_cast<double>(i) / static_cast<double>(count))));
+  return samples;
+}
+
+ConformanceVector sampled(const ConformanceVector& vector, const std::vector<double>& samples) {
+  ConformanceVector result = vector;
+  const std::size_t count = samples.size() - 1;
+  const double step = vector.breaks.back() / static_cast<double>(count);
+  result.breaks.clear();
+  result.coefficients.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    result.breaks.push_back(static_cast<double>(i) * step);
+    result.coefficients.push_back({samples[i], (samples[i + 1] - samples[i]) / step});
+  }
+  result.breaks.push_back(vector.breaks.back());
+  return result;
+}
+
 Chain<largest_degree> signal_of(const ConformanceVector& vector) {
   return piecewise_polynomial(vector.breaks, vector.coefficients);
 }
@@ -527,11 +556,15 @@ Certified truth_of(const ConformanceVector& vector) {
 }
 
 Json vectors_json(std::uint64_t seed, VectorForm form) {
+  return vectors_json(seed, form, conformance_vectors(seed, form));
+}
+
+Json vectors_json(std::uint64_t seed, VectorForm form, const std::vector<ConformanceVector>& asked) {
   Json levels = Json::array();
   for (const VectorLevel& level : vector_levels(form))
     levels.push_back({{"level", level.name}, {"difficulty", levels.size() + 1}, {"why", level.why}});
   Json vectors = Json::array();
-  for (const ConformanceVector& vector : conformance_vectors(seed, form)) vectors.push_back(vector_json(vector));
+  for (const ConformanceVector& vector : asked) vectors.push_back(vector_json(vector));
   return {{"raytruth", vector_form_names[static_cast<std::size_t>(form)]},
           {"seed", seed},
           {"levels", std::move(levels)},

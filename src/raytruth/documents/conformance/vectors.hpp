@@ -68,6 +68,15 @@ struct ConformanceVector {
 /// The vectors of a seed, level by level: the same bits on every machine.
 std::vector<ConformanceVector> conformance_vectors(std::uint64_t seed, VectorForm form = VectorForm::second);
 
+/// What a vector asks, as experiments/schemas/vectors.json describes it, without the reference.
+nlohmann::ordered_json question_json(const ConformanceVector& vector);
+
+/// The scalars at the ends of `intervals` equal intervals along a ray, of one along a slab.
+std::vector<double> samples_of(const ConformanceVector& vector, std::int64_t intervals);
+
+/// What a program that has only these samples can know: the ray or slab that is linear between them.
+ConformanceVector sampled(const ConformanceVector& vector, const std::vector<double>& samples);
+
 /// The signal of a vector, exactly.
 Chain<largest_degree> signal_of(const ConformanceVector& vector);
 
@@ -77,5 +86,8 @@ Certified truth_of(const ConformanceVector& vector);
 
 /// The vectors of a seed with their certified answers, as experiments/schemas/vectors.json describes them.
 nlohmann::ordered_json vectors_json(std::uint64_t seed, VectorForm form = VectorForm::second);
+
+/// Such a document of vectors that were made of those of the seed.
+nlohmann::ordered_json vectors_json(std::uint64_t seed, VectorForm form, const std::vector<ConformanceVector>& vectors);
 
 }  // namespace raytruth

@@ -59,17 +59,21 @@ LevelScore score_level(std::string level, const std::vector<const ScoredVector*>
   result.level = std::move(level);
   result.cases = static_cast<std::int64_t>(vectors.size());
   std::vector<AnswerScore> answers;
+  std::vector<double> errors;
   double fewest = std::numeric_limits<double>::infinity();
   for (const ScoredVector* vector : vectors) {
     if (!vector->answer) continue;
     if (!is_finite(*vector->answer)) ++result.not_finite;
     answers.push_back(score_of(*vector->answer, vector->truth));
+    if (const double error = answers.back().error(); std::isfinite(error)) errors.push_back(error);
     if (const double digits = answers.back().digits(); digits < fewest) {
       fewest = digits;
       result.worst = vector->id;
     }
   }
   result.answered = static_cast<std::int64_t>(answers.size());
+  if (!errors.empty())
+    result.error_mean = std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size());
   result.color = score_part(answers, &AnswerScore::color_digits, &AnswerScore::color_error);
   result.opacity = score_part(answers, &AnswerScore::opacity_digits, &AnswerScore::opacity_error);
   const PartScore both = score_part(answers, &AnswerScore::digits, &AnswerScore::error);
@@ -139,22 +143,19 @@ struct Line {
   }
 };
 
-/// The lines that are not blank.
-std::vector<Line> lines_of(const std::string& path) {
-  std::string bytes = read_text(path, "a readable CSV file");
+/// The lines of a file's text that are not blank.
+std::vector<Line> lines_of(std::string_view bytes, const std::string& name) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  if (bytes.starts_with(byte_order_mark)) bytes.erase(0, byte_order_mark.size());
+  if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
-    throw InputError(
-        fmt::format("{}: found text in UTF-16, by its byte order mark; UTF-8 is allowed", input_name(path)));
-  std::istringstream text(bytes);
+    throw InputError(fmt::format("{}: found text in UTF-16, by its byte order mark; UTF-8 is allowed", name));
+  std::istringstream text{std::string(bytes)};
   std::vector<Line> lines;
   std::string line;
   for (int number = 1; std::getline(text, line); ++number)
-    if (!boost::trim_copy(line).empty()) lines.push_back({fmt::format("{}: line {}", input_name(path), number), line});
+    if (!boost::trim_copy(line).empty()) lines.push_back({fmt::format("{}: line {}", name, number), line});
   if (lines.empty())
-    throw InputError(
-        fmt::format("{}: found no lines; a header {} is allowed", input_name(path), fmt::join(header, ",")));
+    throw InputError(fmt::format("{}: found no lines; a header {} is allowed", name, fmt::join(header, ",")));
   return lines;
 }
 
@@ -187,7 +188,12 @@ std::vector<LevelScore> score(const std::vector<ScoredVector>& vectors) {
 }
 
 std::map<std::string, Answer> read_answers(const std::string& path, std::vector<std::string>& warnings) {
-  const std::vector<Line> lines = lines_of(path);
+  return answers_in(read_text(path, "a readable CSV file"), input_name(path), warnings);
+}
+
+std::map<std::string, Answer> answers_in(std::string_view text, const std::string& name,
+                                         std::vector<std::string>& warnings) {
+  const std::vector<Line> lines = lines_of(text, name);
   Dialect dialect = dialect_of(lines.front().text);
   if (!std::equal(header.begin(), header.end(), lines.front().fields(dialect).begin()))
     lines.front().refuse(fmt::format("'{}'", shortened(boost::trim_copy(lines.front().text))),
@@ -205,13 +211,12 @@ std::map<std::string, Answer> read_answers(const std::string& path, std::vector<
     if (!is_finite(answer)) without_numbers.push_back(fields[0]);
   });
   if (dialect.separator != ',')
-    warnings.push_back(fmt::format("{}: read with {} between fields{}", input_name(path),
+    warnings.push_back(fmt::format("{}: read with {} between fields{}", name,
                                    dialect.separator == ';' ? "semicolons" : "tabulators",
                                    dialect.has_decimal_commas ? " and decimal commas" : ""));
   if (!without_numbers.empty())
-    warnings.push_back(fmt::format("{}: {} of {} answers are not finite, and count as no digits; the first is {}",
-                                   input_name(path), without_numbers.size(), answers.size(),
-                                   shortened(without_numbers.front())));
+    warnings.push_back(fmt::format("{}: {} of {} answers are not finite, and count as no digits; the first is {}", name,
+                                   without_numbers.size(), answers.size(), shortened(without_numbers.front())));
   return answers;
 }
 

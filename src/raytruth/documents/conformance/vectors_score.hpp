@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace raytruth {
@@ -61,6 +62,7 @@ struct LevelScore {
   std::int64_t not_finite = 0;  ///< of the answers: they have no digits, and no error
   std::optional<double> digits_min;
   std::optional<double> digits_median;
+  std::optional<double> error_mean;  ///< absolute, of the larger one of colour and opacity, of what is finite
   std::optional<std::string> worst;  ///< id of the vector with the fewest digits, the first of them
   PartScore color;
   PartScore opacity;
@@ -75,5 +77,9 @@ std::vector<LevelScore> score(const std::vector<ScoredVector>& vectors);
 /// number that is not finite, or left out, is an answer without digits, with a warning. Throws InputError: file, line,
 /// what was found, what is allowed.
 std::map<std::string, Answer> read_answers(const std::string& path, std::vector<std::string>& warnings);
+
+/// Reads a file's text likewise; `name` is what messages call it.
+std::map<std::string, Answer> answers_in(std::string_view text, const std::string& name,
+                                         std::vector<std::string>& warnings);
 
 }  // namespace raytruth
