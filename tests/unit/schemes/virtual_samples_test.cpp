@@ -28,6 +28,7 @@ Experiment experiment_of(std::int64_t rays) {
           .transfers = {},
           .samplings = {},
           .schemes = {},
+          .programs = {},
           .measures = {},
           .claims = {},
           .checks = {},
