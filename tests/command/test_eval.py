@@ -325,7 +325,7 @@ class Slabs(ProgramTest):
                 refused = {name for name, scheme in answer["schemes"].items() if "status" in scheme}
                 # The fades are made for cones, the gradient of the extinction for lobes.
                 fades = {name for name in names if "fades" in name}
-                self.assertEqual(refused, fades if highlight == "lobe" else {"opacity_gradient"})
+                self.assertEqual(refused, fades if highlight == "lobe" else {"opacity_gradient", "opacity_gradient_linear"})
                 errors = answer["schemes"]["normalized_linear"]
                 for term in self.TERMS:
                     self.assertLess(max(map(abs, errors[f"{term}_error"])), 1e-13)

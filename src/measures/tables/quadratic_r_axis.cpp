@@ -64,7 +64,7 @@ Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
                             .count = count,
                             .look_up = RadiusLookUp::linear_in_radius});
     options.axes.push_back({.low = low, .high = high, .count = count});
-    // The same number of nodes, up to the largest curvature that 8-bit data have in a slab of length 1.
+    // As many nodes, up to the largest curvature that 8-bit data have in a slab of length 1.
     options.axes.push_back({.low = 0x1p-5, .high = high, .count = count});
   }
   return options;

@@ -39,9 +39,9 @@ StretchLight stretch_light(const DiagonalStretch& stretch, const DiagonalNode* n
   return light;
 }
 
-/// The same for associated emission, an interval crossed from end to end. Seen from the end that is nearer the depth is
-/// taken as d(x) = D x + e x (1 - x), which is exact where the way is straight, with e from its exact mean r. Then the
-/// mean of 1 - exp(-d) is
+/// What a stretch does in associated emission, its interval crossed from end to end. Seen from the end that is nearer
+/// the depth is taken as d(x) = D x + e x (1 - x), which is exact where the way is straight, with e from its exact mean
+/// r. Then the mean of 1 - exp(-d) is
 ///
 ///     P = r - (D^2 / 15 - D r / 10 + 3 r^2 / 5) + (D^3 / 24 + D^2 e / 40 + D e^2 / 120 + e^3 / 840) - D^4 / 120 + ...,
 ///

@@ -32,7 +32,7 @@ inline constexpr std::array<std::string_view, 2> table_filter_names{"nearest", "
 /// A pre-integration table from which the slabs of `order1`, or the parabolas of `order2` and of the quadratic
 /// gray-value model, are read.
 struct SceneTable {
-  /// Of catalogue::table_builders, or of catalogue::second_order_builders or catalogue::quadratic_gray_builders.
+  /// A name of catalogue::table_builders, or of catalogue::second_order_builders or catalogue::quadratic_gray_builders.
   std::string builder = "exact";
   int iterations = 64;                    ///< of a builder that takes them
   std::optional<RadiusAxis> radius = {};  ///< of a quadratic table; none: its builder's

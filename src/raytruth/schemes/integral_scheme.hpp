@@ -61,7 +61,7 @@ struct CellAdaptive {};
 /// (schemes/quadratic_gray.hpp).
 struct QuadraticGrayModel {};
 
-/// The same model as it is printed, its gray values 0 to 255 being the scalars from the transfer function's first point
+/// This model as it is printed, its gray values 0 to 255 being the scalars from the transfer function's first point
 /// to its last one (schemes/quadratic_gray_printed.hpp).
 struct QuadraticGrayPrintedModel {};
 

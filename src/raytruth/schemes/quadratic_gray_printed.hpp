@@ -21,7 +21,7 @@ enum class AroundMinimum {
 };
 
 /// Where the dissertation's quadratic model, as printed, departs from the integral (section 5.3, algorithms 9 to 11;
-/// errata, dissertation 5 to 11). Every slip is a switch, so that it can be shown alone, or repaired alone; the
+/// errata of the dissertation, 5 to 11). Every slip is a switch, so that it can be shown alone, or repaired alone; the
 /// readings are of what the print leaves open. Default: as printed.
 struct QuadraticGrayPrint {
   // Slips.

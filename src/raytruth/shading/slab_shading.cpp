@@ -231,6 +231,31 @@ SlabShader shader_of_opacity_normal(const SlabCosines& cosines, const Lighting& 
   }};
 }
 
+/// grad tau = d tau / ds (A z + B): the normal is linear along the slab (5.3.16 to 5.3.20), neither normalised nor
+/// clamped.
+SlabShader shader_of_linear_gradient(const SlabCosines& cosines, const Lighting& lighting) {
+  return {.at =
+              [cosines, n = lighting.shininess](double x, double slope) {
+                const double light = cosines.light_front + x * (cosines.light_back - cosines.light_front);
+                const double half = cosines.half_front + x * (cosines.half_back - cosines.half_front);
+                const double specular = std::pow(half, n) * std::pow(slope, n);
+                return LitPoint{slope * light, specular, specular};
+              },
+          .specular_density = SpecularDensity::colored};
+}
+
+/// The direction of that gradient, the normal linear along the slab: it is turned round where the extinction falls.
+SlabShader shader_of_linear_normal(const SlabCosines& cosines, const Lighting& lighting) {
+  return {.at = [cosines, illumination = Illumination(lighting)](double x, double slope) {
+    if (slope == 0) return LitPoint{};
+    const double sign = slope < 0 ? -1 : 1;
+    const double light = cosines.light_front + x * (cosines.light_back - cosines.light_front);
+    const double half = cosines.half_front + x * (cosines.half_back - cosines.half_front);
+    const double specular = illumination.specular(sign * half);
+    return LitPoint{illumination.diffuse(sign * light), specular, specular};
+  }};
+}
+
 // --- The catalogue ---
 
 std::string_view takes_all(const Lighting& /*lighting*/) { return {}; }
@@ -286,6 +311,25 @@ std::vector<Shading> make_shadings() {
                   .refusal = takes_all,
                   .shader = shader_of_opacity_normal,
                   .color = "#AA4499",
+                  .marker = "+",
+                  .needs_extinction = true});
+  list.push_back(
+      {.name = "opacity_gradient_linear",
+       .summary = "the gradient of the extinction, its normal linear along the slab: not normalised nor clamped",
+       .source = "dissertation, eqs. 5.3.16 to 5.3.20",
+       .refusal = [](const Lighting& lighting) -> std::string_view {
+         return lighting.is_lobe() ? "" : "it is made for the highlight called lobe";
+       },
+       .shader = shader_of_linear_gradient,
+       .color = "#332288",
+       .marker = "x",
+       .needs_extinction = true});
+  list.push_back({.name = "opacity_gradient_linear_normalized",
+                  .summary = "the direction of the gradient of the extinction, its normal linear along the slab",
+                  .source = "dissertation, eqs. 5.3.16 to 5.3.20; errata",
+                  .refusal = takes_all,
+                  .shader = shader_of_linear_normal,
+                  .color = "#332288",
                   .marker = "+",
                   .needs_extinction = true});
   return list;

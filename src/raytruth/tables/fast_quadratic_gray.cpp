@@ -106,7 +106,7 @@ double mean_place(const std::array<double, 3>& place, double u) {
   return place[0] + u * (place[1] / 2 + u * place[2] / 3);
 }
 
-/// Of x^2 over u = 0 to 1.
+/// The mean of x^2 over u = 0 to 1.
 double mean_square_place(const std::array<double, 3>& place) {
   const auto& [x0, x1, x2] = place;
   return x0 * x0 + x0 * x1 + (x1 * x1 + 2 * x0 * x2) / 3 + x1 * x2 / 2 + x2 * x2 / 5;

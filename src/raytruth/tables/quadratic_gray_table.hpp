@@ -46,7 +46,7 @@ struct QuadraticGrayTable {
 /// Entries along the axes of scalars.
 inline constexpr std::size_t largest_quadratic_size = 1024;
 
-/// Of a table, 1 GiB in binary32.
+/// The most entries of a table, 1 GiB in binary32.
 inline constexpr std::size_t most_quadratic_entries = std::size_t{1} << 26U;
 
 /// A table in binary64 whose entries are the certified slabs of the same parabolas, and the largest of their radii: a
@@ -58,8 +58,8 @@ struct CertifiedQuadraticGray {
 CertifiedQuadraticGray certified_quadratic_gray_table(const PiecewiseLinear& transfer, const TableAxes& axes,
                                                       const RadiusAxis& radius, Emission emission);
 
-/// The same in binary32, for rendering. Where all points of the transfer function are at entries it goes by the kernels
-/// of fast_quadratic_gray.hpp, at most 10^-5 off for colours up to 1.
+/// The table in binary32, for rendering. Where all points of the transfer function are at entries it goes by the
+/// kernels of fast_quadratic_gray.hpp, at most 10^-5 off for colours up to 1.
 QuadraticGrayTable<float> quadratic_gray_table(const PiecewiseLinear& transfer, const TableAxes& axes,
                                                const RadiusAxis& radius, Emission emission);
 

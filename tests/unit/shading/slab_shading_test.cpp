@@ -371,6 +371,23 @@ TEST(OpacityGradient, FollowsTheExtinction) {
   EXPECT_NEAR(shade("opacity_gradient", cosines, less, Emission::plain, lighting).diffuse[0], -3 * 0.8 * seen_less,
               1e-14);
   EXPECT_EQ(shade("opacity_gradient_normalized", cosines, less, Emission::plain, lighting).diffuse[0], 0);
+  // In the quadratic model the normal is linear along the slab; with one normal it is the same light.
+  const auto linear = shade("opacity_gradient_linear", cosines, rising, Emission::plain, lighting);
+  EXPECT_NEAR(linear.diffuse[0], up.diffuse[0], 1e-14);
+  EXPECT_NEAR(linear.specular[0], up.specular[0], 1e-14);
+  // Nearly nothing absorbs: the means of 0.2 + 0.6 x and of its square, and of what is left of -0.4 + x above 0.
+  const double faint = 1e-9;
+  const PiecewiseLinear thin({{0, {faint, {1, 1, 1}}}, {1, {2 * faint, {1, 1, 1}}}});
+  const SlabOptics seen(thin, 0, 1, 1);
+  const auto through = shade("opacity_gradient_linear", {0.2, 0.8, 0.2, 0.8, 1}, seen, Emission::plain, lighting);
+  EXPECT_NEAR(through.diffuse[0] / faint, 0.5, 1e-7);
+  EXPECT_NEAR(through.specular[0] / (faint * faint), 0.28, 1e-7);
+  const SlabCosines crossing{-0.4, 0.6, -0.4, 0.6, 1};
+  EXPECT_NEAR(shade("opacity_gradient_linear_normalized", crossing, seen, Emission::plain, lighting).diffuse[0], 0.18,
+              1e-3);
+  const SlabOptics falling_seen(PiecewiseLinear({{0, {2 * faint, {1, 1, 1}}}, {1, {faint, {1, 1, 1}}}}), 0, 1, 1);
+  EXPECT_NEAR(shade("opacity_gradient_linear_normalized", crossing, falling_seen, Emission::plain, lighting).diffuse[0],
+              0.08, 1e-3);
   lighting.shininess = 2.5;
   EXPECT_TRUE(std::isnan(shade("opacity_gradient", cosines, less, Emission::plain, lighting).specular[0]));
 }
