@@ -160,6 +160,7 @@ void two_threads_against_one(benchmark::State& state) {
                               .transfers = {},
                               .samplings = {{.kind = "cells", .step = {}}},
                               .schemes = {"order0_left", "order0_right", "order0_mid", "order1", "order2"},
+                              .programs = {},
                               .measures = {},
                               .claims = {},
                               .checks = {},
