@@ -26,9 +26,20 @@ def is_program(scheme):
 
 
 def chosen(experiment, names):
-    """The experiment with these peers' programs alone, Raytruth's own schemes, and nothing that is drawn of others."""
+    """The experiment with these peers' programs alone, Raytruth's own schemes, and nothing that is said or drawn of others."""
     experiment = json.loads(json.dumps(experiment))
     keep = lambda scheme: not is_program(scheme) or peer_of(scheme["name"]) in names
+    gone = {scheme["name"] for scheme in experiment.get("schemes", []) if not keep(scheme)}
+    for measure in experiment["measures"]:
+        gone |= {variant["name"] for variant in measure.get("variants", []) if not keep(variant["scheme"])}
+
+    def is_of_others(item):
+        selectors = [item[key] for key in ("row", "rows", "otherwise") if key in item]
+        return any(name in gone for rows in selectors for value in rows.values() for name in (value if isinstance(value, list) else [value]))
+
+    for where, key in ((experiment, "published"), (experiment, "checks"), (experiment["plot"], "panels")):
+        if key in where:
+            where[key] = [item for item in where[key] if not is_of_others(item)]
     if "schemes" in experiment:
         experiment["schemes"] = [scheme for scheme in experiment["schemes"] if keep(scheme)]
     for measure in experiment["measures"]:

@@ -123,6 +123,18 @@ class Study(unittest.TestCase):
         self.assertEqual({variant["scheme"]["name"] for variant in images["variants"] if study.is_program(variant["scheme"])}, {"vtkjs"})
         self.assertEqual(images["pictures"]["errors"], ["vtkjs 0.0625"])
 
+    def test_nothing_is_said_of_others(self):
+        for name in ("peers_vectors.json", "peers_images.json"):
+            for peers in (["miter"], ["vtk"], ["povray"]):
+                chosen = study.chosen(document(name), peers)
+                others = {"vtk_linear", "miter", "vtkjs 0.0625", "vtk_gpu 0.25"} - {
+                    item["name"] for item in chosen.get("schemes", []) if isinstance(item, dict)
+                } - {variant["name"] for measure in chosen["measures"] for variant in measure.get("variants", [])}
+                said = json.dumps([chosen["published"], chosen.get("checks", []), chosen["plot"]["panels"]])
+                self.assertTrue(others)
+                for other in others:
+                    self.assertNotIn(f'"{other}"', said)
+
     def test_differences_are_told(self):
         result = {"columns": {"scheme": {"key": True}, "rmse": {}}, "rows": [{"scheme": "miter", "rmse": 0.1, "status": "ok", "why": None}]}
         tolerances = {"raytruth": {}, "miter": {"rmse": [0, 0.01]}}
