@@ -27,6 +27,7 @@ CASE = {
 }
 RAMP = changed(CASE, "/transfer_function/points/0", {"s": 0, "extinction": 0, "color": [0, 0, 1]})
 PARABOLAS = changed(changed(CASE, "/builder", "second_order_iterations"), "/iterations", 16)
+OPACITIES = {"points": [{"s": 0, "opacity": 0, "color": [1, 1, 1]}, {"s": 255, "opacity": 0.5, "color": [1, 1, 1]}], "unit_length": 1}
 RADIUS = {"axis": "signed", "low": 0.25, "high": 4, "count": 2}
 QUADRATIC = changed(changed(CASE, "/builder", "quadratic_gray"), "/radius", RADIUS)
 PSI = {"builder": "partial_pre_integration", "size": 16}
@@ -260,6 +261,8 @@ class Refusals(TableTest):
         (changed(QUADRATIC, "/radius/high", ...), "/radius/high", ""),
         (changed(changed(QUADRATIC, "/builder", "quadratic_gray_printed"), "/size", 33), "/size", "every (256 / n)-th"),
         (changed(CASE, "/radius", RADIUS), "/radius", ""),
+        (changed(changed(changed(QUADRATIC, "/size", 1024), "/radius/axis", "equal_steps"), "/radius/count", 400), "/size", "67108864"),
+        (changed(changed(QUADRATIC, "/light", "diffuse"), "/transfer_function", OPACITIES), "/transfer_function", "state the extinction"),
         (changed(QUADRATIC, "/exponent", 8), "/exponent", "diffuse or specular"),
         (changed(changed(QUADRATIC, "/light", "specular"), "/exponent", 8), "/v", ""),
         (changed(changed(QUADRATIC, "/light", "diffuse"), "/exponent", 8), "/exponent", "specular"),
@@ -267,7 +270,7 @@ class Refusals(TableTest):
     ]
 
     def test_bad_cases(self):
-        only_program = {"ascending", "optical depth", "depth", "low < high", "high = 2^(k + count - 1)", "every (256 / n)-th"}  # what no schema can say
+        only_program = {"ascending", "optical depth", "depth", "low < high", "high = 2^(k + count - 1)", "every (256 / n)-th", "67108864", "state the extinction"}  # what no schema can say
         for case, pointer, words in self.bad:
             with self.subTest(pointer=pointer, words=words):
                 done = self.run_program("table", self.write("case.json", case), "-o", "bad.npy")

@@ -173,8 +173,8 @@ MadeTable quadratic_table(const TableCase& asked, const QuadraticGrayAsked& quad
   QuadraticGrayTable<double> table;
   Json nodes;
   if (is_certified) {
-    CertifiedQuadraticGray certified =
-        certified_quadratic_gray_table(*asked.transfer, asked.axes, quadratic.radius, asked.emission);
+    CertifiedQuadraticGray certified = asked.json.at("size").blame_for(
+        [&] { return certified_quadratic_gray_table(*asked.transfer, asked.axes, quadratic.radius, asked.emission); });
     table = std::move(certified.table);
     nodes = {{"error_bound", certified.radius}};
   } else {
@@ -264,6 +264,13 @@ TableCase read_table_case(const JsonReader& json, std::vector<std::string>& warn
     asked.builder = find_named(catalogue::table_builders(), name);
   }
   if (!is_psi) read_slabs(json, asked, warnings);
+  if (const auto* const of_model = std::get_if<QuadraticGrayAsked>(&asked.builder)) {
+    const bool needs_extinction = of_model->lit || of_model->builder->name != certified_quadratic_gray;
+    if (needs_extinction && asked.transfer->is_linear_in_opacity())
+      json.at("transfer_function")
+          .refuse("opacities that are linear between points",
+                  "one whose points state the extinction, or the colours of quadratic_gray,");
+  }
   if (const auto format = json.find("format")) {
     asked.format = *find_named(table_formats, format->word(names_of(table_formats)));
   }
