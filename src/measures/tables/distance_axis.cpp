@@ -1,8 +1,8 @@
 #include "experiments/measure.hpp"
+#include "measures/tables/table_difference.hpp"
 #include "measures/tables/table_study.hpp"
 #include "raytruth/tables/dissertation_linear.hpp"
 #include "raytruth/tables/exact.hpp"
-#include "raytruth/tables/table_difference.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,11 @@
 #include "experiments/measure.hpp"
+#include "measures/tables/table_difference.hpp"
 #include "measures/tables/table_study.hpp"
 #include "raytruth/catalogue.hpp"
 #include "raytruth/statistics/order.hpp"
 #include "raytruth/tables/brute_force.hpp"
 #include "raytruth/tables/exact.hpp"
 #include "raytruth/tables/subrange.hpp"
-#include "raytruth/tables/table_difference.hpp"
 
 #include <fmt/format.h>
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace raytruth {
 
@@ -14,7 +15,8 @@ namespace {
 
 constexpr unsigned node_count = 16;
 constexpr double deepest_part = 2;
-constexpr double dark = 1e-20;  ///< a transmittance behind which no light is seen
+constexpr double most_parts = 1e6;  ///< a stretch that needs more is opaque within few of them
+constexpr double dark = 1e-20;      ///< a transmittance behind which no light is seen
 
 /// The nodes of the rule on [0, 1], and their weights.
 struct Rule {
@@ -160,10 +162,11 @@ QuadraticGraySlabs::vec4 QuadraticGraySlabs::integrate(const QuadraticGray& slab
     const double whole = slab.radius * depth(slab, interval, from, from + width);
     const double steepest =
         std::max(std::abs(extinction_at(slab, interval, from)), std::abs(extinction_at(slab, interval, from + width)));
-    const double parts = std::ceil(std::max(1.0, slab.radius * steepest * width / deepest_part));
+    const double parts = std::ceil(std::clamp(slab.radius * steepest * width / deepest_part, 1.0, most_parts));
     double before = 0;
-    for (double part = 0; part < parts && std::exp(-in_front - before) > dark; ++part) {
-      const double start = from + width * (part / parts);
+    for (std::int64_t part = 0; part < static_cast<std::int64_t>(parts) && std::exp(-in_front - before) > dark;
+         ++part) {
+      const double start = from + width * (static_cast<double>(part) / parts);
       const double length = width / parts;
       for (std::size_t k = 0; k < node_count; ++k) {
         const double z = start + length * rule.nodes[k];

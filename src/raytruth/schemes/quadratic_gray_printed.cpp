@@ -17,6 +17,7 @@ constexpr int whole_steps = 10;          // INT_STEP
 constexpr double least_fraction = 1e-3;  // EPS
 constexpr double zero = 1e-9;            // what `IsZero`, which is not printed, takes for 0
 constexpr double deepest_part = 2;       // of an exact piece's colour
+constexpr double most_parts = 1e6;
 constexpr std::size_t curves_kept = 7;
 constexpr std::size_t extinction = 3;  // the channel behind the colour's
 
@@ -73,6 +74,7 @@ double QuadraticGrayPrinted::item(const Items& items, double s) const {
     const auto i = std::min(static_cast<std::size_t>(at), last - 1);
     return items[i] + (at - static_cast<double>(i)) * (items[i + 1] - items[i]);
   }
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): as printed, and nothing is negative
   const auto i = std::min(static_cast<std::size_t>(at + 0.5), last);
   const double middle = items[i];
   const double before = items[i > 0 ? i - 1 : 1];
@@ -236,8 +238,11 @@ QuadraticGrayPrinted::vec4 QuadraticGrayPrinted::light_of(const Curve& curve, do
   // In y = sqrt(s - M), in parts on which the items are one polynomial and that are not deep.
   const double offset = print_.smoothed ? 0.5 : 0.0;
   std::vector<double> ends{piece.low};
-  for (double from = std::max(std::floor(piece.low - offset) + offset + 1, offset); from < piece.high; from += 1)
-    if (from > piece.low && from <= largest_gray) ends.push_back(from);
+  const double next = std::floor(std::max(piece.low, 0.0) - offset);
+  for (auto i = static_cast<std::int64_t>(next); i <= static_cast<std::int64_t>(largest_gray); ++i) {
+    const double border = static_cast<double>(i) + offset;
+    if (border >= offset && border > piece.low && border < piece.high && border <= largest_gray) ends.push_back(border);
+  }
   if (piece.low < 0 && piece.high > 0 && offset > 0) ends.insert(ends.begin() + 1, 0.0);
   ends.push_back(piece.high);
   if (piece.falls) std::reverse(ends.begin(), ends.end());
@@ -256,11 +261,11 @@ QuadraticGrayPrinted::vec4 QuadraticGrayPrinted::light_of(const Curve& curve, do
       return curve.radius * gauss<3>([&](double way) { return density(extinction, scalar(way)); }, from, to);
     };
     const double whole = depth(0, width);
-    const double parts = std::ceil(std::max(1.0, whole / deepest_part));
+    const double parts = std::ceil(std::clamp(whole / deepest_part, 1.0, most_parts));
     double passed = 0;
-    for (double part = 0; part < parts; ++part) {
-      const double from = width * (part / parts);
-      const double to = width * ((part + 1) / parts);
+    for (std::int64_t part = 0; part < static_cast<std::int64_t>(parts); ++part) {
+      const double from = width * (static_cast<double>(part) / parts);
+      const double to = width * (static_cast<double>(part + 1) / parts);
       for (std::size_t c = 0; c < 3; ++c)
         light[static_cast<Eigen::Index>(c)] +=
             curve.radius * gauss<15>(
@@ -351,7 +356,7 @@ QuadraticGrayPrinted::vec4 QuadraticGrayPrinted::operator()(double front, double
   if (is_flat || (curvature < 0 && print_.upward_only)) return at(0);
   if (!print_.radius_steps) return at(curvature);
   const RadiusNodes::Place place = nodes_.place(curvature);
-  const vec4 first = at(axis_.curvature(place.first));
+  vec4 first = at(axis_.curvature(place.first));
   if (place.weight == 0) return first;
   return first + place.weight * (at(axis_.curvature(place.second)) - first);
 }

@@ -124,8 +124,8 @@ class QuadraticGrayPrinted {
   double length_;
   Emission emission_;
   QuadraticGrayPrint print_;
-  std::array<std::array<Items, 4>, 2> items_;  ///< colour and extinction; the second ones upside down
-  std::size_t side_ = 0;                       ///< which of both is looked at
+  std::array<std::array<Items, 4>, 2> items_{};  ///< colour and extinction; the second ones upside down
+  std::size_t side_ = 0;                         ///< which of both is looked at
   std::array<std::vector<Curve>, 2> curves_;
   std::vector<SumPiece> pieces_;
   RadiusAxis axis_;

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <numbers>
 
@@ -122,8 +123,9 @@ class DiagonalPlan {
     nodes_.clear();
     for (const DiagonalCuts::Part& part : cuts_(rise, curvature)) {
       const double steepest = part.width * static_cast<double>(most_rate);
-      const double count = std::ceil(std::max(1.0, steepest / deepest));
-      for (double i = 0; i < count; ++i) add(part, i / count, 1 / count, steepest / count, plain_length);
+      const double count = std::ceil(std::clamp(steepest / deepest, 1.0, most_parts));
+      for (std::int64_t i = 0; i < static_cast<std::int64_t>(count); ++i)
+        add(part, static_cast<double>(i) / count, 1 / count, steepest / count, plain_length);
     }
     return {.stretches = stretches_.data(),
             .stretch_count = stretches_.size(),
@@ -139,6 +141,7 @@ class DiagonalPlan {
   static constexpr double deepest_of_faint_moments = 0.02;
   static constexpr double most_bend_of_moments = 1e-4;
   static constexpr double deepest = 3;
+  static constexpr double most_parts = 1e6;  // such a part is opaque
   static constexpr std::size_t nodes_of_deep_parts = 6;
 
   void add(const DiagonalCuts::Part& part, double start, double share, double steepest, double plain_length) {
