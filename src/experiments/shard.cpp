@@ -147,7 +147,7 @@ Part read_part(const std::filesystem::path& file) {
   for (const auto& [name, digest] : digests.items())
     if (stated.at(name).text() != digest)
       stated.at(name).refuse("a digest that is not that of the " + name,
-                             "a part as `raytruth run --shard` wrote it; the same command makes it again");
+                             "a part as `raytruth run --shard` wrote it, and makes it again,");
   const JsonReader shard = json.at("shard");
   Part part{.file = file.string(),
             .experiment = json.at("experiment").json(),

@@ -96,7 +96,7 @@ const Command merge_command{
         "The result is that of one run, byte for byte, but for the provenance: `seconds` is the sum over all\n"
         "units, `threads` the most of a part, `parts` their number; --without-times leaves these out, there and in\n"
         "`raytruth run`. Parts must be of one experiment, seed, profile, processor and build, that of this program;\n"
-        "what two parts hold must agree. Their digests tell damage; who would deceive is found by --recheck alone.\n",
+        "what two parts hold must agree. Their digests tell damage; who would deceive is found by --recheck alone.",
     .describe = describe};
 
 }  // namespace raytruth

@@ -201,7 +201,7 @@ const Command run_command{
     .example = "raytruth run experiments/xi_adaptive.json -o out --profile quick",
     .notes =
         "The parts that --shard makes, on as many machines as there are, become the result of one run by\n"
-        "`raytruth merge`. experiments/launch has what GNU parallel, Slurm and MPI need to start them.\n",
+        "`raytruth merge`. experiments/launch has what GNU parallel, Slurm and MPI need to start them.",
     .describe = describe};
 
 }  // namespace raytruth

@@ -19,6 +19,4 @@ void set_memory_limit(std::uint64_t bytes);
 /// the place may be left to who catches it. Throws InputError.
 void need_memory(std::uint64_t bytes, std::string_view what, std::string_view place = {});
 
-std::uint64_t default_memory_limit();
-
 }  // namespace raytruth
