@@ -10,7 +10,7 @@ namespace raytruth {
 /// change its digest too.
 std::string sha256(std::string_view text);
 
-/// That of a file, which is read piece by piece. Throws InputError where it cannot be read.
+/// The SHA-256 of a file, which is read piece by piece. Throws InputError where it cannot be read.
 std::string sha256_of_file(const std::filesystem::path& file);
 
 }  // namespace raytruth

@@ -383,7 +383,10 @@ Experiment read_experiment_as_run(const JsonReader& json) {
 }
 
 Field make_field(const FieldSource& source, const VolumeAccess& volumes) {
-  SourcedVolume volume = make_volume(source.document, volumes);
+  const auto make = [&] { return make_volume(source.document, volumes); };
+  // What is wrong with a file names its place already.
+  const bool is_generated = std::holds_alternative<GeneratedField>(source.document);
+  SourcedVolume volume = is_generated ? source.json.blame_for(make) : make();
   if (volume.file.empty()) return {source.name, std::move(volume.grid), {0, 1}};
   const auto [low, high] = volume.grid.range();
   if (!std::isfinite(high - low))
