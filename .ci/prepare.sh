@@ -4,11 +4,13 @@
 
 # The one list of packages, by their names in Debian 12.
 packages_to_build=(g++ cmake ninja-build ccache git libboost-dev libcli11-dev libegl-dev libeigen3-dev
-  libflint-arb-dev libfmt-dev libnifti-dev libosmesa6-dev libpng-dev libpugixml-dev librandom123-dev libtbb-dev
-  libteem-dev nlohmann-json3-dev zlib1g-dev)
+  libflint-arb-dev libfmt-dev libnifti-dev libosmesa6-dev libpng-dev libpugixml-dev librandom123-dev libssl-dev
+  libtbb-dev libteem-dev nlohmann-json3-dev zlib1g-dev)
 packages_to_experiment=(python3-matplotlib mricron-data)
 packages_to_test=(libbenchmark-dev libgl1-mesa-dri libgsl-dev libgtest-dev python3-jsonschema python3-skimage)
 packages_to_tidy=(clang-tidy-16)
+# Engines that start shards, by experiments/launch. Nothing here installs them: tests of those that are absent are skipped.
+packages_to_launch=(munge openmpi-bin parallel slurm-wlm)
 
 # packages_of_peers NAME: what another renderer needs; only experiments/peers/run --install installs them.
 packages_of_peers() {

@@ -1,7 +1,9 @@
 #include "experiments/experiment.hpp"
 
+#include "experiments/experiment_as_run.hpp"
 #include "experiments/measure.hpp"
 #include "raytruth/catalogue.hpp"
+#include "raytruth/core/memory_limit.hpp"
 #include "raytruth/core/named.hpp"
 #include "raytruth/documents/case_json.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
@@ -289,6 +291,15 @@ bool has_gl_measure(const Json& document) {
   });
 }
 
+/// Studies keep three numbers at least of every ray, for each way to approximate it.
+void check_memory_of_rays(const Experiment& experiment) {
+  const auto ways = experiment.samplings.size() * std::max<std::size_t>(1, experiment.schemes.size());
+  experiment.json.at("rays").at("count").blame_for([&] {
+    need_memory(3 * sizeof(double) * static_cast<std::uint64_t>(experiment.rays.count) * ways,
+                fmt::format("{} rays by {} schemes and samplings", experiment.rays.count, ways));
+  });
+}
+
 /// The document as it is run.
 JsonReader read_document(const std::string& path, std::string_view profile, std::optional<std::int64_t> seed,
                          const std::optional<std::string>& gl) {
@@ -317,7 +328,10 @@ bool uses_gl(const Experiment& experiment) { return has_gl_measure(experiment.js
 
 Experiment read_experiment(const std::string& path, std::string_view profile, std::optional<std::int64_t> seed,
                            const std::optional<std::string>& gl) {
-  const JsonReader json = read_document(path, profile, seed, gl);
+  return read_experiment_as_run(read_document(path, profile, seed, gl));
+}
+
+Experiment read_experiment_as_run(const JsonReader& json) {
   json.only({"raytruth", "name", "question", "source", "seed", "gl", "fields", "rays", "transfer_functions", "emission",
              "samplings", "schemes", "measures", "published", "checks", "plot"});
   Experiment experiment{.name = read_name(json.at("name")),
@@ -376,6 +390,7 @@ Experiment read_experiment(const std::string& path, std::string_view profile, st
       experiment.schemes.push_back(scheme.word(names_of(catalogue::integral_schemes())));
       add_unique(names.schemes, scheme, experiment.schemes.back());
     }
+  if (of_fields) check_memory_of_rays(experiment);
   for (const JsonReader& measure : measure_items) {
     const Measure& found = measure_of(measure);
     add_unique(names.measures, measure.at("kind"), std::string(found.name));
@@ -391,7 +406,10 @@ Experiment read_experiment(const std::string& path, std::string_view profile, st
 }
 
 Field make_field(const FieldSource& source, const VolumeAccess& volumes) {
-  SourcedVolume volume = make_volume(source.document, volumes);
+  const auto make = [&] { return make_volume(source.document, volumes); };
+  // What is wrong with a file names its place already.
+  const bool is_generated = std::holds_alternative<GeneratedField>(source.document);
+  SourcedVolume volume = is_generated ? source.json.blame_for(make) : make();
   if (volume.file.empty()) return {source.name, std::move(volume.grid), {0, 1}};
   const auto [low, high] = volume.grid.range();
   if (!std::isfinite(high - low))

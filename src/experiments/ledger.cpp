@@ -165,7 +165,8 @@ Json make_ledger(const std::vector<JsonReader>& results) {
 
   add_joint_verdicts(rows);
 
-  const Provenance provenance{.profile = "full", .threads = 1, .started = std::chrono::system_clock::now()};
+  const Provenance provenance{.profile = "full",
+                              .times = RunTimes{.threads = 1, .started = utc_text(std::chrono::system_clock::now())}};
   return {{"raytruth", "result/1"},
           {"experiment",
            {{"raytruth", "experiment/1"}, {"name", "ledger"}, {"question", "Which of the publications' claims hold?"}}},

@@ -7,6 +7,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -146,20 +147,30 @@ Json describe(const Field& field) {
   return json;
 }
 
+std::string utc_text(std::chrono::system_clock::time_point time) {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(time)));
+}
+
+int threads_in_use() {
+  return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
+Json to_json(const GlIdentity& gl) {
+  return {{"platform", gl.platform}, {"vendor", gl.vendor}, {"renderer", gl.renderer}, {"version", gl.version}};
+}
+
 Json to_json(const Provenance& provenance) {
   Json json = build_identity();
   json["profile"] = provenance.profile;
-  json["threads"] = provenance.threads;
-  json["seconds"] = std::round(provenance.seconds * 1000) / 1000;
-  json["started"] =
-      fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(provenance.started)));
-  if (provenance.resumed) json["resumed"] = true;
+  if (const auto& times = provenance.times) {
+    json["threads"] = times->threads;
+    json["seconds"] = std::round(times->seconds * 1000) / 1000;
+    json["started"] = times->started;
+    if (times->resumed) json["resumed"] = true;
+    if (times->parts > 0) json["parts"] = times->parts;
+  }
   if (provenance.programs) json["programs"] = true;
-  if (provenance.gl)
-    json["gl"] = {{"platform", provenance.gl->platform},
-                  {"vendor", provenance.gl->vendor},
-                  {"renderer", provenance.gl->renderer},
-                  {"version", provenance.gl->version}};
+  if (provenance.gl) json["gl"] = to_json(*provenance.gl);
   return json;
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,22 +19,35 @@ nlohmann::ordered_json to_json(const Row& row);
 /// Throws InputError for what is no flat record.
 Row read_row(const JsonReader& json);
 
-/// How and when a result came to be.
+/// When and how long a result was worked at: what no two runs share.
+struct RunTimes {
+  int threads = 0;
+  double seconds = 0;   ///< of a merged result: the sum over all units
+  std::string started;  ///< as `utc_text` has it
+  bool resumed = false;
+  std::int64_t parts = 0;  ///< that it is merged of; 0: it is of one run
+};
+
+/// How a result came to be.
 struct Provenance {
   std::string profile;
-  int threads = 0;
-  double seconds = 0;
-  std::chrono::system_clock::time_point started;
-  bool resumed = false;
+  std::optional<RunTimes> times = {};
   std::optional<GlIdentity> gl = {};  ///< what ran the shaders
   bool programs = false;              ///< whether programs from outside were allowed to run
 };
+
+/// "2026-11-30T19:14:56Z".
+std::string utc_text(std::chrono::system_clock::time_point time);
+
+/// How many threads measures may use now.
+int threads_in_use();
 
 /// What decides about the bytes of rows besides the experiment: version, commit, compiler, flags, cpu.
 nlohmann::ordered_json build_identity();
 
 /// The build's identity, and how and when it ran.
 nlohmann::ordered_json to_json(const Provenance& provenance);
+nlohmann::ordered_json to_json(const GlIdentity& gl);
 
 /// What a result says of a field: size, range of the data, file.
 nlohmann::ordered_json describe(const Field& field);

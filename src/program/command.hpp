@@ -21,8 +21,10 @@ namespace raytruth {
 struct VolumeOptions {
   std::string data;  ///< folders, separated by ':'
   std::optional<double> nan;
-  std::optional<std::uint64_t> memory_limit;  ///< bytes
 };
+
+/// A quarter of this machine's memory: `memory_limit` where --memory-limit does not say.
+std::uint64_t default_memory_limit();
 
 /// What they say, for whoever reads volumes. Remarks on folders of --data that are not there.
 VolumeAccess volume_access(const VolumeOptions& options);

@@ -2,8 +2,10 @@
 #include "experiments/output.hpp"
 #include "experiments/result.hpp"
 #include "experiments/runner.hpp"
+#include "experiments/shard.hpp"
 #include "program/command.hpp"
-#include "program/progress_bar.hpp"
+#include "program/run_report.hpp"
+#include "raytruth/core/memory_limit.hpp"
 #include "raytruth/core/one_line.hpp"
 
 #include <fmt/format.h>
@@ -33,22 +35,9 @@ struct RunOptions {
   bool check = false;
   bool resume = false;
   bool runs_programs = false;
+  bool without_times = false;
+  std::optional<std::string> shard;
   VolumeOptions volumes;
-};
-
-/// A bar of what is done.
-class BarObserver final : public RunObserver {
- public:
-  void begin(std::size_t units) override { bar_.emplace(units); }
-  void show(std::string_view unit) override { bar_->show(unit); }
-  void advance(bool is_worked) override { bar_->advance(is_worked); }
-  void warn(std::string_view line) override {
-    bar_->clear();
-    say(line);
-  }
-
- private:
-  std::optional<ProgressBar> bar_;
 };
 
 /// Where the result goes; empty: to standard output.
@@ -104,34 +93,44 @@ std::string notice(const RunOptions& options) {
   if (options.gl) command += " --gl " + *options.gl;
   if (options.threads > 0) command += fmt::format(" -j {}", options.threads);
   if (!options.volumes.data.empty()) command += " --data " + options.volumes.data;
-  if (options.volumes.memory_limit) command += fmt::format(" --memory-limit {}", *options.volumes.memory_limit);
+  if (memory_limit() != default_memory_limit()) command += fmt::format(" --memory-limit {}", memory_limit());
   if (options.check) command += " --check";
   if (options.runs_programs) command += " --programs";
-  command += fmt::format(" -o {} --resume", *options.folder);
+  if (options.without_times) command += " --without-times";
+  if (options.shard) command += " --shard " + *options.shard;
+  command += fmt::format(" -o {}{}", *options.folder, options.shard ? "" : " --resume");
   return fmt::format("\nraytruth: interrupted; what is done is kept, and this goes on with it: {}\n",
                      one_line(command));
 }
 
-/// Tells what the publications state beside what was measured, and whether the bounds hold; false where one does not.
-bool report(const Experiment& experiment, const std::string& profile, const nlohmann::ordered_json& result) {
-  if (profile == "full") {
-    fmt::print(stderr, "{}", claims_table(result.at("published")));
-    if (result.at("published").empty()) say(experiment.name + ": no publication claims anything of it");
-  } else {
-    say(fmt::format("{}: no verdicts: the profile {} is for tests, and has fewer rays and fields", experiment.name,
-                    profile));
+/// Does a part of each experiment. What is stated of the whole is judged when the parts are merged.
+void run_shards(const std::vector<Experiment>& experiments, const RunOptions& options, const RunRequest& request) {
+  const Shard shard = read_shard(*options.shard);
+  for (std::size_t i = 0; i < experiments.size(); ++i) {
+    const Experiment& experiment = experiments[i];
+    BarObserver observer;
+    const auto file = run_shard(experiment, options.experiments[i], shard, request, *options.folder, observer);
+    const auto units = units_of(experiment);
+    say(fmt::format("{}: {} of {} units are in {}", experiment.name, units_of_shard(units, shard).size(), units.size(),
+                    file.string()));
   }
-  const auto broken = broken_checks(result);
-  const std::size_t count = result.at("checks").size();
-  if (count > 0) say(fmt::format("{}: {} of {} checks hold", experiment.name, count - broken.size(), count));
-  for (const std::string& line : broken) say(line);
-  return broken.empty();
 }
 
-int run_experiments(const RunOptions& options) {
+/// Refuses options that do not go together.
+void check_options(const RunOptions& options) {
   if (!options.folder && options.experiments.size() > 1)
     throw InputError(fmt::format("run: found {} experiments without -o; one is allowed", options.experiments.size()));
   if (!options.folder && options.resume) throw InputError("run: found --resume without -o; -o DIR is needed with it");
+  if (!options.shard) return;
+  read_shard(*options.shard);
+  if (!options.folder) throw InputError("run: found --shard without -o; -o DIR is needed with it, for the part");
+  for (const auto& [name, is_given] : {std::pair("--check", options.check), {"--without-times", options.without_times}})
+    if (is_given)
+      throw InputError(fmt::format("run: found {} beside --shard; `raytruth merge` of all parts takes it", name));
+}
+
+int run_experiments(const RunOptions& options) {
+  check_options(options);
   std::vector<std::string> files;
   for (const std::string& asked : options.experiments) {
     files.push_back(find_experiment(asked));
@@ -152,13 +151,19 @@ int run_experiments(const RunOptions& options) {
 
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  const RunRequest request{
-      .profile = options.profile, .resume = options.resume, .volumes = volume_access(options.volumes)};
+  const RunRequest request{.profile = options.profile,
+                           .resume = options.resume,
+                           .has_times = !options.without_times,
+                           .volumes = volume_access(options.volumes)};
   const auto run = [&request](const Experiment& experiment, const std::filesystem::path& file) {
     BarObserver observer;
     return run_experiment(experiment, request, file, observer);
   };
   const InterruptionNotice told_at_ctrl_c(notice(options));
+  if (options.shard) {
+    run_shards(experiments, options, request);
+    return 0;
+  }
   bool all_hold = true;
   for (const Experiment& experiment : experiments) {
     const auto file = result_file(options, experiment);
@@ -182,6 +187,11 @@ std::function<int()> describe(CommandOptions& add) {
   add.flag("--check", options->check, "Exit with 1 if a bound that the experiment states does not hold");
   add.programs(options->runs_programs);
   add.flag("--resume", options->resume, "Finish an interrupted run; needs -o");
+  add.text(
+      "--shard", "K/N", options->shard,
+      "Do the K-th of N parts of the units into NAME.K-of-N.part, needs -o; again after an interruption it goes on");
+  add.flag("--without-times", options->without_times,
+           "Leave threads, seconds and the time out of the provenance, so that runs compare by their bytes");
   add.data(options->volumes);
   return [options] { return run_experiments(*options); };
 }
@@ -189,10 +199,13 @@ std::function<int()> describe(CommandOptions& add) {
 }  // namespace
 
 extern const Command run_command;
-const Command run_command{.name = "run",
-                          .summary = "Run experiments",
-                          .example = "raytruth run experiments/xi_adaptive.json -o out --profile quick",
-                          .notes = "",
-                          .describe = describe};
+const Command run_command{
+    .name = "run",
+    .summary = "Run experiments",
+    .example = "raytruth run experiments/xi_adaptive.json -o out --profile quick",
+    .notes =
+        "The parts that --shard makes, on as many machines as there are, become the result of one run by\n"
+        "`raytruth merge`. experiments/launch has what GNU parallel, Slurm and MPI need to start them.",
+    .describe = describe};
 
 }  // namespace raytruth

@@ -11,6 +11,7 @@ extern const Command info_command;
 extern const Command judge_command;
 extern const Command ledger_command;
 extern const Command list_command;
+extern const Command merge_command;
 extern const Command plot_command;
 extern const Command render_command;
 extern const Command run_command;
@@ -21,9 +22,9 @@ extern const Command vectors_command;
 
 std::span<const Command* const> commands() {
   static constexpr std::array list{
-      &run_command,     &list_command,  &eval_command,  &render_command, &compare_command,
-      &table_command,   &plot_command,  &diff_command,  &info_command,   &transfer_command,
-      &vectors_command, &score_command, &judge_command, &ledger_command,
+      &run_command,      &merge_command,   &list_command,  &eval_command,  &render_command,
+      &compare_command,  &table_command,   &plot_command,  &diff_command,  &info_command,
+      &transfer_command, &vectors_command, &score_command, &judge_command, &ledger_command,
   };
   return list;
 }

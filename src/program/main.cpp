@@ -2,8 +2,10 @@
 #include "experiments/version.hpp"
 #include "program/command.hpp"
 #include "raytruth/core/error.hpp"
+#include "raytruth/core/memory_limit.hpp"
 #include "raytruth/core/one_line.hpp"
 #include "raytruth/volume/files/find_volume.hpp"
+#include "raytruth/volume/files/read_volume.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -54,6 +56,7 @@ class CommandLine {
       if (program_.get_subcommands().empty() && argc > 1) refuse_command(argv[1]);
       throw InputError(fmt::format("command line: {}; `raytruth --help` tells what is allowed", error.what()));
     }
+    set_memory_limit(memory_limit_);
     return chosen_();
   }
 
@@ -62,6 +65,13 @@ class CommandLine {
     CLI::App& added = *program_.add_subcommand(std::string(command.name), std::string(command.summary));
     CommandOptions options(added);
     const auto work = command.describe(options);
+    added
+        .add_option("--memory-limit", memory_limit_,
+                    "Refuse volumes, images and documents that need more, as 64MiB or 8G (default: a quarter of this "
+                    "machine's memory)")
+        ->type_name("SIZE")
+        ->envname("RAYTRUTH_MEMORY_LIMIT")
+        ->transform(CLI::Validator(CLI::AsSizeValue(false)).description(""));
     added.callback([this, work] { chosen_ = work; });
     added.footer(
         fmt::format("{}{}Example:\n  {}", command.notes, command.notes.empty() ? "" : "\n\n", command.example));
@@ -77,6 +87,7 @@ class CommandLine {
 
   CLI::App program_{"Exact rays through volumes, and how far the schemes of volume rendering are from them.",
                     "raytruth"};
+  std::uint64_t memory_limit_ = default_memory_limit();  ///< bytes, for one thing that a file announces
   std::function<int()> chosen_;
 };
 
@@ -179,13 +190,6 @@ void CommandOptions::threads(int& value) {
 void CommandOptions::data(VolumeOptions& volumes) {
   parser_.add_option("--data", volumes.data, "Folders of volumes, separated by ':'; before those of RAYTRUTH_DATA")
       ->type_name("DIR");
-  parser_
-      .add_option(
-          "--memory-limit", volumes.memory_limit,
-          "Refuse volumes whose voxels need more, as 64MiB or 8G; 8 bytes each (default: this machine's memory)")
-      ->type_name("SIZE")
-      ->envname("RAYTRUTH_MEMORY_LIMIT")
-      ->transform(CLI::Validator(CLI::AsSizeValue(false)).description(""));
 }
 
 void CommandOptions::nan(VolumeOptions& volumes) {
@@ -213,14 +217,14 @@ void CommandOptions::spacing(std::vector<double>& value) {
       ->check(CLI::PositiveNumber);
 }
 
+std::uint64_t default_memory_limit() { return memory_of_machine() / 4; }
+
 VolumeAccess volume_access(const VolumeOptions& options) {
   if (options.nan && !std::isfinite(*options.nan))
     throw InputError(fmt::format("command line: --nan: found {}; a finite number is allowed", *options.nan));
   for (const auto& folder : absent_folders(folders_in(options.data)))
     say(fmt::format("warning: --data: {}: there is no such folder", folder.string()));
-  VolumeAccess access{.folders = volume_folders(options.data), .nan = options.nan};
-  if (options.memory_limit) access.memory_limit = *options.memory_limit;
-  return access;
+  return {.folders = volume_folders(options.data), .nan = options.nan, .memory_limit = memory_limit()};
 }
 
 void CommandOptions::seed(std::int64_t& value, const std::string& summary) {

@@ -181,6 +181,19 @@ class Vectors(OutsideTest):
             rows = json.loads((self.folder / "out/outside.json").read_text())["rows"]
             self.assertEqual({row["status"] for row in rows}, {status})
 
+    def test_parts_are_merged_with_what_was_allowed(self):
+        self.write("outside.json", json.dumps({**EXPERIMENT, "schemes": [self.program("zeros")]}))
+        whole = self.output_of("run", "outside.json", "--programs", "--without-times")
+        for number in ("1/2", "2/2"):
+            self.output_of("run", "outside.json", "--programs", "--shard", number, "-o", "parts")
+        merge = ("merge", "parts", "-o", "merged.json", "--without-times")
+        self.output_of(*merge)
+        self.assertEqual((self.folder / "merged.json").read_bytes(), whole)
+        self.assert_refused(self.run_program(*merge, "--recheck", "100%"), "units that ran programs", "--programs")
+        self.output_of(*merge, "--recheck", "100%", "--programs")
+        self.output_of("run", "outside.json", "--shard", "1/2", "-o", "refused")
+        self.assert_refused(self.run_program("merge", "parts", "refused", "-o", "merged.json"), '"programs"')
+
 
 class Cases(OutsideTest):
     def test_a_ray(self):

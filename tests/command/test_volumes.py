@@ -144,6 +144,24 @@ class BesideTheFile(ProgramTest):
         self.assertEqual(self.eval("--memory-limit", "480", volume="nan.npy", nan=0).returncode, 0)
         self.assert_refused(self.eval("--memory-limit", "much", volume="nan.npy", nan=0), "--memory-limit")
 
+    def test_memory_limit_of_what_is_no_volume(self):
+        def refused(*arguments, words):
+            self.assert_refused(self.run_program(*arguments), *words, "--memory-limit SIZE")
+
+        self.write("field.json", changed(EXPERIMENT, "/fields/0/size", 2048))
+        refused("run", "field.json", "--memory-limit", "1G", words=["field.json: /fields/0: ", "2048 x 2048 x 2048 voxels", "1073741824"])
+        self.write("rays.json", changed(EXPERIMENT, "/rays/count", 10**8))
+        refused("run", "rays.json", "--memory-limit", "1G", words=["rays.json: /rays/count: ", "100000000 rays", "1073741824"])
+        self.write("lists.json", "[" + "[]," * 1000000 + "[]]")
+        refused("run", "lists.json", "--memory-limit", "1M", words=["lists.json: ", "1048576"])
+        # Whoever bounds volumes bounds no case that fits into 64 MiB.
+        self.write("lists.json", "[" + "[]," * 100000 + "[]]")
+        self.assert_refused(self.run_program("run", "lists.json", "--memory-limit", "1M"), "an object")
+        self.write("scene.json", {**SCENE, "camera": {"size": [16384, 16384]}})
+        refused("render", "scene.json", "-o", "a.npy", "--memory-limit", "1G", words=["scene.json: /camera/size: ", "16384 x 16384 pixels"])
+        self.write("image.pfm", b"PF\n16384 16384\n-1\n")
+        refused("compare", "image.pfm", "image.pfm", "--memory-limit", "1G", words=["image.pfm: ", "16384 x 16384 pixels"])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -1,5 +1,6 @@
 #include "raytruth/documents/field_document.hpp"
 
+#include "raytruth/core/memory_limit.hpp"
 #include "raytruth/core/named.hpp"
 #include "raytruth/signals/fields/generated_fields.hpp"
 #include "raytruth/volume/files/read_volume.hpp"
@@ -106,6 +107,26 @@ Grid read_inline_grid(const JsonReader& json, bool has_spacing) {
   return grid;
 }
 
+/// How many voxels a generated field has along each side.
+std::int64_t side_of(const GeneratedField& field) {
+  return std::visit(
+      [](const auto& kind) {
+        if constexpr (requires { kind.samples; })
+          return kind.samples;
+        else
+          return kind.size;
+      },
+      field);
+}
+
+Grid make_within_memory(const GeneratedField& field) {
+  const std::int64_t side = side_of(field);
+  // Smoothing has a second grid.
+  need_memory(2 * sizeof(double) * static_cast<std::uint64_t>(side * side * side),
+              fmt::format("a generated field of {0} x {0} x {0} voxels", side));
+  return make_grid(field);
+}
+
 }  // namespace
 
 FieldDocument read_named_field(const JsonReader& json, std::uint64_t seed) {
@@ -140,7 +161,8 @@ void fill_in_field_defaults(nlohmann::ordered_json& field) {
 }
 
 SourcedVolume make_volume(const FieldDocument& field, const VolumeAccess& volumes) {
-  if (const auto* const generated = std::get_if<GeneratedField>(&field)) return {.grid = make_grid(*generated)};
+  if (const auto* const generated = std::get_if<GeneratedField>(&field))
+    return {.grid = make_within_memory(*generated)};
   if (const auto* const file = std::get_if<VolumeFile>(&field)) return read_sourced_volume(*file, volumes);
   return {.grid = std::get<Grid>(field)};
 }

@@ -1,6 +1,7 @@
 #include "raytruth/documents/scene_document.hpp"
 
 #include "raytruth/catalogue.hpp"
+#include "raytruth/core/memory_limit.hpp"
 #include "raytruth/core/named.hpp"
 #include "raytruth/documents/case_json.hpp"
 #include "raytruth/documents/field_document.hpp"
@@ -66,6 +67,10 @@ std::array<std::int64_t, 2> read_image_size(const JsonReader& json) {
   const std::array<std::int64_t, 2> size{items[0].integer(1, largest_image_side),
                                          items[1].integer(1, largest_image_side)};
   if (size[0] * size[1] > most_pixels) json.refuse("more than 2^28 pixels", "fewer");
+  json.blame_for([&size] {
+    need_memory(static_cast<std::uint64_t>(size[0] * size[1]) * sizeof(Eigen::Array4d),
+                fmt::format("an image of {} x {} pixels", size[0], size[1]));
+  });
   return size;
 }
 

@@ -1,6 +1,7 @@
 #include "raytruth/images/image_file.hpp"
 
 #include "raytruth/core/error.hpp"
+#include "raytruth/core/memory_limit.hpp"
 #include "raytruth/core/npy.hpp"
 #include "raytruth/images/png_file.hpp"
 #include "raytruth/volume/files/byte_stream.hpp"
@@ -79,6 +80,8 @@ void check_size(const std::filesystem::path& file, std::int64_t width, std::int6
       width * height > most_pixels)
     refuse(file, fmt::format("an image of {} x {} pixels", width, height),
            fmt::format("1 to {} along each side and 2^28 in all are allowed", largest_image_side));
+  need_memory(static_cast<std::uint64_t>(width * height) * sizeof(Eigen::Array4d),
+              fmt::format("an image of {} x {} pixels", width, height), file.string());
 }
 
 StoredImage from_png(const std::filesystem::path& file, const std::string& bytes) {

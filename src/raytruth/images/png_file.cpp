@@ -1,6 +1,7 @@
 #include "raytruth/images/png_file.hpp"
 
 #include "raytruth/core/error.hpp"
+#include "raytruth/core/memory_limit.hpp"
 
 #include <fmt/format.h>
 #include <png.h>
@@ -113,6 +114,10 @@ PngPixels read_png(const std::string& bytes, std::int64_t largest_side, std::int
   if (result.size[0] * result.size[1] > most_pixels)
     throw InputError(
         fmt::format("{} x {} pixels; at most {} are allowed", result.size[0], result.size[1], most_pixels));
+  // Four channels of two bytes twice, and as numbers of an image.
+  constexpr std::uint64_t bytes_per_pixel = 2 * 4 * 2 + 4 * sizeof(double);
+  need_memory(bytes_per_pixel * static_cast<std::uint64_t>(result.size[0] * result.size[1]),
+              fmt::format("an image of {} x {} pixels", result.size[0], result.size[1]));
   const std::size_t row_bytes = png_get_rowbytes(png, info);
   const bool is_wide = png_get_bit_depth(png, info) == 16;
   std::vector<unsigned char> pixels(row_bytes * static_cast<std::size_t>(result.size[1]));

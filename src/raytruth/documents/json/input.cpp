@@ -1,6 +1,7 @@
 #include "raytruth/documents/json/input.hpp"
 
 #include "raytruth/core/error.hpp"
+#include "raytruth/core/memory_limit.hpp"
 #include "raytruth/core/one_line.hpp"
 
 #include <fmt/format.h>
@@ -41,6 +42,10 @@ std::string read_text(const std::string& path, std::string_view what) {
   while (const std::size_t count = std::fread(part.data(), 1, part.size(), file.get())) {
     text.append(part.data(), count);
     if (text.size() > longest_text) refuse("more than 1 GiB");
+    if (text.size() > always_within_memory_limit && text.size() > memory_limit())
+      refuse(
+          fmt::format("more than {} bytes, the memory limit, which --memory-limit SIZE or RAYTRUTH_MEMORY_LIMIT sets",
+                      memory_limit()));
   }
   if (std::ferror(file.get()) != 0) refuse(unreadable());
   return text;

@@ -1,5 +1,6 @@
 #include "raytruth/documents/json/json_reader.hpp"
 
+#include "raytruth/core/memory_limit.hpp"
 #include "raytruth/core/one_line.hpp"
 #include "raytruth/documents/json/input.hpp"
 
@@ -94,6 +95,7 @@ class StrictBuilder {
   bool end_array() { return close(); }
 
   bool key(std::string& name) {
+    take_memory(name.size() + sizeof(std::string));
     Json& object = *open_.back();
     if (object.contains(name))
       refuse_place(place(), fmt::format("the key {} twice", Json(name).dump()), "each key once");
@@ -118,7 +120,18 @@ class StrictBuilder {
   }
 
  private:
+  /// Lists grow by doubling, and an empty list or object is an allocation of its own too.
+  void take_memory(std::size_t bytes) {
+    memory_ += 2 * (bytes + sizeof(Json));
+    if (memory_ <= std::max(memory_limit(), always_within_memory_limit)) return;
+    refuse_place(place(), fmt::format("a document that needs more than {} bytes of memory", memory_limit()),
+                 "what the memory limit holds, which --memory-limit SIZE or RAYTRUTH_MEMORY_LIMIT sets,");
+  }
+
   Json* insert(Json value) {
+    take_memory(value.is_string()       ? value.get_ref<const std::string&>().size() + sizeof(std::string)
+                : value.is_structured() ? sizeof(std::vector<Json>)
+                                        : 0);
     if (open_.empty()) {
       document_ = std::move(value);
       return &document_;
@@ -164,6 +177,7 @@ class StrictBuilder {
   const std::string& file_name_;
   Json document_;
   std::vector<Json*> open_;
+  std::uint64_t memory_ = 0;
   Json* member_ = nullptr;
 };
 

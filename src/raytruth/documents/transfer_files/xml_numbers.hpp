@@ -1,5 +1,6 @@
 #pragma once
 
+#include "raytruth/core/memory_limit.hpp"
 #include "raytruth/documents/json/input.hpp"
 #include "raytruth/documents/transfer_files/file_map.hpp"
 
@@ -8,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -46,6 +48,9 @@ struct XmlFile {
 
 inline XmlFile read_xml(const std::filesystem::path& file) {
   const std::string text = read_text(file.string(), "a readable XML file");
+  // An element takes four bytes of text at least, and sixty-four as a node.
+  const std::uint64_t bytes = 17 * text.size();
+  if (bytes > always_within_memory_limit) need_memory(bytes, "an XML document", file.string());
   auto document = std::make_shared<pugi::xml_document>();
   const auto result = document->load_buffer(text.data(), text.size());
   if (!result) {

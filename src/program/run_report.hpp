@@ -1,0 +1,30 @@
+#pragma once
+
+#include "experiments/runner.hpp"
+#include "program/progress_bar.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace raytruth {
+
+/// A bar of what is done.
+class BarObserver final : public RunObserver {
+ public:
+  void begin(std::size_t units) override;
+  void show(std::string_view unit) override;
+  void advance(bool is_worked) override;
+  void warn(std::string_view line) override;
+
+ private:
+  std::optional<ProgressBar> bar_;
+};
+
+/// Tells what the publications state beside what was measured, and whether the bounds hold; false where one does not.
+bool report(const Experiment& experiment, const std::string& profile, const nlohmann::ordered_json& result);
+
+}  // namespace raytruth
