@@ -188,7 +188,7 @@ class Vectors(OutsideTest):
             self.output_of("run", "outside.json", "--programs", "--shard", number, "-o", "parts")
         merge = ("merge", "parts", "-o", "merged.json", "--without-times")
         self.output_of(*merge)
-        self.assertEqual((self.folder / "merged.json").read_bytes(), whole)
+        self.assertEqual((self.folder / "merged.json").read_text(), whole)
         self.assert_refused(self.run_program(*merge, "--recheck", "100%"), "units that ran programs", "--programs")
         self.output_of(*merge, "--recheck", "100%", "--programs")
         self.output_of("run", "outside.json", "--shard", "1/2", "-o", "refused")
