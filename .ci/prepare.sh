@@ -8,6 +8,8 @@ packages_to_build=(g++ cmake ninja-build ccache git libboost-dev libcli11-dev li
   libtbb-dev libteem-dev nlohmann-json3-dev zlib1g-dev)
 packages_to_experiment=(python3-matplotlib mricron-data)
 packages_to_test=(libbenchmark-dev libgl1-mesa-dri libgsl-dev libgtest-dev python3-jsonschema python3-skimage)
+# The Python module: where they are missing it is left out, with a message.
+packages_of_python=(libpython3-dev pybind11-dev python3-numpy)
 packages_to_tidy=(clang-tidy-16)
 # Engines that start shards, by experiments/launch. Nothing here installs them: tests of those that are absent are skipped.
 packages_to_launch=(munge openmpi-bin parallel slurm-wlm)

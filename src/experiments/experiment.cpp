@@ -301,9 +301,8 @@ void check_memory_of_rays(const Experiment& experiment) {
 }
 
 /// The document as it is run.
-JsonReader read_document(const std::string& path, std::string_view profile, std::optional<std::int64_t> seed,
+JsonReader read_document(const JsonReader& file, std::string_view profile, std::optional<std::int64_t> seed,
                          const std::optional<std::string>& gl) {
-  const JsonReader file = JsonReader::from_file(path);
   file.at("raytruth").word({"experiment/1"});
   Json document = file.json();
   if (const auto quick = file.find("quick")) {
@@ -328,7 +327,12 @@ bool uses_gl(const Experiment& experiment) { return has_gl_measure(experiment.js
 
 Experiment read_experiment(const std::string& path, std::string_view profile, std::optional<std::int64_t> seed,
                            const std::optional<std::string>& gl) {
-  return read_experiment_as_run(read_document(path, profile, seed, gl));
+  return read_experiment(JsonReader::from_file(path), profile, seed, gl);
+}
+
+Experiment read_experiment(const JsonReader& document, std::string_view profile, std::optional<std::int64_t> seed,
+                           const std::optional<std::string>& gl) {
+  return read_experiment_as_run(read_document(document, profile, seed, gl));
 }
 
 Experiment read_experiment_as_run(const JsonReader& json) {

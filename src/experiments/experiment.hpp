@@ -87,6 +87,8 @@ bool uses_gl(const Experiment& experiment);
 /// in it. `seed` replaces the document's, and `gl` that of a document that uses it. Throws InputError.
 Experiment read_experiment(const std::string& path, std::string_view profile, std::optional<std::int64_t> seed,
                            const std::optional<std::string>& gl);
+Experiment read_experiment(const JsonReader& document, std::string_view profile, std::optional<std::int64_t> seed,
+                           const std::optional<std::string>& gl);
 
 /// Makes a field, from its generator or its file found by `volumes`. Throws VolumeAbsent where no folder holds it.
 Field make_field(const FieldSource& source, const VolumeAccess& volumes);

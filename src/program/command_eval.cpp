@@ -1,17 +1,12 @@
 #include "experiments/output.hpp"
 #include "program/command.hpp"
-#include "raytruth/documents/case.hpp"
-#include "raytruth/documents/conformance/outside_answers.hpp"
-#include "raytruth/documents/scene_case.hpp"
-#include "raytruth/documents/slab_case.hpp"
+#include "raytruth/documents/evaluate.hpp"
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
-#include <tbb/parallel_for.h>
 #include <nlohmann/json.hpp>
 
-#include <utility>
-#include <variant>
+#include <string>
 
 namespace raytruth {
 
@@ -24,59 +19,12 @@ struct EvalOptions {
   VolumeOptions volumes;
 };
 
-/// Answers a case of any kind.
-struct Evaluation {
-  bool runs_programs;
-
-  nlohmann::ordered_json operator()(const Case& ray) const {
-    nlohmann::ordered_json answer = evaluate(ray);
-    add_outside_answers(ray, runs_programs, answer);
-    return answer;
-  }
-  nlohmann::ordered_json operator()(const SlabCase& slab) const { return evaluate(slab); }
-  nlohmann::ordered_json operator()(const SceneFile& scene) const { return evaluate(scene, runs_programs); }
-};
-
 int evaluate_cases(const EvalOptions& options) {
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-
   const JsonReader document = JsonReader::from_file(options.file);
-  const VolumeAccess volumes = volume_access(options.volumes);
-  CaseReader reader(volumes);
-  std::vector<std::string> warnings;
-  std::vector<std::size_t> first_warnings;  // of each case
-  std::vector<std::variant<Case, SlabCase, SceneFile>> cases;
-  for (const JsonReader& item : document.is_array() ? document.items() : std::vector{document}) {
-    first_warnings.push_back(warnings.size());
-    if (is_slab_case(item)) {
-      cases.emplace_back(read_slab_case(item, warnings));
-    } else if (is_scene_case(item)) {
-      SceneFile scene = read_scene(item, {.volumes = volumes, .opacity = {}});
-      warnings.insert(warnings.end(), scene.warnings.begin(), scene.warnings.end());
-      cases.emplace_back(std::move(scene));
-    } else {
-      cases.emplace_back(reader.read(item, warnings));
-    }
-  }
-  first_warnings.push_back(warnings.size());
-  for (const std::string& warning : warnings) say(warning);
-
-  std::vector<nlohmann::ordered_json> answers(cases.size());
-  std::vector<std::string> errors(cases.size());
-  tbb::parallel_for(std::size_t{0}, cases.size(), [&](std::size_t i) {
-    try {
-      answers[i] = std::visit(Evaluation{options.runs_programs}, cases[i]);
-      for (std::size_t warning = first_warnings[i]; warning < first_warnings[i + 1]; ++warning)
-        answers[i]["warnings"].push_back(warnings[warning]);
-    } catch (const InputError& error) {
-      errors[i] = error.what();
-    }
-  });
-  // The first one in the file, whichever thread met one first.
-  for (const std::string& error : errors)
-    if (!error.empty()) throw InputError(error);
-  print((document.is_array() ? nlohmann::ordered_json(answers) : answers.front()).dump(2) + "\n");
+  const EvaluateRequest request{.volumes = volume_access(options.volumes), .runs_programs = options.runs_programs};
+  print(evaluate_document(document, request, [](const std::string& warning) { say(warning); }).dump(2) + "\n");
   return 0;
 }
 

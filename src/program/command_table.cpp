@@ -68,32 +68,6 @@ TableOfShader make_in_shader(const TableCase& asked, const std::string& platform
   return {judged(asked, **builder, table), device->identity()};
 }
 
-/// What a renderer's author wants to know of the table, beside it.
-Json description(const TableCase& asked, const MadeTable& table, const std::optional<GlIdentity>& device,
-                 const std::filesystem::path& file) {
-  Json text{{"raytruth", "table/1"},
-            {"table", file.filename().string()},
-            {"shape", table.shape},
-            {"axes", table.axes},
-            {"format", std::string(asked.format.name)},
-            {"entries",
-             "entry i of n stands for low + (high - low) i / (n - 1); as a texture it has its centre at "
-             "(i + 1/2) / n"}};
-  if (!table.radius.is_null()) text["radius"] = table.radius;
-  if (table.last_scalar && *table.last_scalar != asked.axes.high) text["high"] = *table.last_scalar;
-  if (asked.transfer) text["colors"] = "opacity-weighted: composite with C += T C_slab, T *= 1 - opacity";
-  if (!asked.transfer_description.is_null()) text["transfer_function"] = asked.transfer_description;
-  text["error"] = table.error;
-  text["case"] = asked.json.json();
-  text["build"] = build_identity();
-  if (device)
-    text["gl"] = {{"platform", device->platform},
-                  {"vendor", device->vendor},
-                  {"renderer", device->renderer},
-                  {"version", device->version}};
-  return text;
-}
-
 int write_table(const TableOptions& options) {
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
@@ -112,18 +86,19 @@ int write_table(const TableOptions& options) {
     device = std::move(made.device);
     return std::move(made.table);
   }();
-  const auto is_beyond = [](double value) { return value > 1; };
-  const auto beyond = std::count_if(table.values.begin(), table.values.end(), is_beyond);
-  if (asked.format.is_texel && asked.format.type != TexelType::float32 && asked.format.type != TexelType::float16 &&
-      beyond > 0)
+  if (const auto beyond = clamped_numbers(asked, table); beyond > 0)
     say(fmt::format("warning: {}: {} numbers above 1 are clamped to it, as {} holds no larger ones", options.table_case,
                     beyond, asked.format.name));
+
+  Json text = table_description(asked, table, file.filename().string());
+  text["build"] = build_identity();
+  if (device) text["gl"] = to_json(*device);
 
   // Both files or none: the table waits beside its place until its description is written.
   const std::filesystem::path temporary = temporary_beside(file);
   write_temporary(temporary, file, make_bytes(table.shape, table.values, asked.format));
   try {
-    write_whole(file.string() + ".json", description(asked, table, device, file).dump(2) + "\n");
+    write_whole(file.string() + ".json", text.dump(2) + "\n");
   } catch (...) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);

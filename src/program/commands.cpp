@@ -4,6 +4,7 @@
 
 namespace raytruth {
 
+extern const Command advise_command;
 extern const Command compare_command;
 extern const Command diff_command;
 extern const Command eval_command;
@@ -21,11 +22,10 @@ extern const Command transfer_command;
 extern const Command vectors_command;
 
 std::span<const Command* const> commands() {
-  static constexpr std::array list{
-      &run_command,      &merge_command,   &list_command,  &eval_command,  &render_command,
-      &compare_command,  &table_command,   &plot_command,  &diff_command,  &info_command,
-      &transfer_command, &vectors_command, &score_command, &judge_command, &ledger_command,
-  };
+  static constexpr std::array list{&run_command,     &merge_command,  &list_command,    &eval_command,
+                                   &render_command,  &advise_command, &compare_command, &table_command,
+                                   &plot_command,    &diff_command,   &info_command,    &transfer_command,
+                                   &vectors_command, &score_command,  &judge_command,   &ledger_command};
   return list;
 }
 

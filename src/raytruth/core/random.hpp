@@ -14,7 +14,8 @@ enum class RandomStream : std::uint32_t {
   vectors = 4,
   cases = 5,
   molecules = 6,
-  noise = 7
+  noise = 7,
+  pixels = 8
 };
 
 /// Four numbers uniform in [0, 1), multiples of 2^-32, that depend on the arguments alone: Philox 4x32-10

@@ -6,7 +6,7 @@
 #include "raytruth/documents/field_document.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
 #include "raytruth/metrics/signal_error.hpp"
-#include "raytruth/reference/ray_integral.hpp"
+#include "raytruth/reference/ray_truth.hpp"
 #include "raytruth/schemes/scheme_integral.hpp"
 #include "raytruth/signals/marschner_lobb.hpp"
 #include "raytruth/signals/ray_field.hpp"
@@ -129,10 +129,9 @@ Certified truth_of(const Case& ray, const Chain<Degree>& signal) {
   if (const auto* const analytic = std::get_if<AnalyticSignal>(&ray.formula))
     return arb_integral(*analytic, *ray.transfer, ray.emission);
   RayIntegral integral(*ray.transfer, ray.emission);
-  const Certified truth = integral(signal, ray.signal_error);
-  if (truth.status == Status::converged) return truth;
-  const Certified better = integral(std::get<PreciseChain<Degree>>(ray.precise_signal));
-  return better.radius < truth.radius ? better : truth;
+  return ray_truth(
+      integral, signal,
+      ray.signal_error, [&ray]() -> const auto& { return std::get<PreciseChain<Degree>>(ray.precise_signal); });
 }
 
 Json truth_json(const Certified& truth) {

@@ -293,4 +293,29 @@ MadeTable make_table(const TableCase& asked) {
   return psi_table(asked);
 }
 
+nlohmann::ordered_json table_description(const TableCase& asked, const MadeTable& table, const std::string& name) {
+  nlohmann::ordered_json text{
+      {"raytruth", "table/1"},
+      {"table", name},
+      {"shape", table.shape},
+      {"axes", table.axes},
+      {"format", std::string(asked.format.name)},
+      {"entries",
+       "entry i of n stands for low + (high - low) i / (n - 1); as a texture it has its centre at "
+       "(i + 1/2) / n"}};
+  if (!table.radius.is_null()) text["radius"] = table.radius;
+  if (table.last_scalar && *table.last_scalar != asked.axes.high) text["high"] = *table.last_scalar;
+  if (asked.transfer) text["colors"] = "opacity-weighted: composite with C += T C_slab, T *= 1 - opacity";
+  if (!asked.transfer_description.is_null()) text["transfer_function"] = asked.transfer_description;
+  text["error"] = table.error;
+  text["case"] = asked.json.json();
+  return text;
+}
+
+std::int64_t clamped_numbers(const TableCase& asked, const MadeTable& table) {
+  const TexelType type = asked.format.type;
+  if (!asked.format.is_texel || type == TexelType::float32 || type == TexelType::float16) return 0;
+  return std::count_if(table.values.begin(), table.values.end(), [](double value) { return value > 1; });
+}
+
 }  // namespace raytruth

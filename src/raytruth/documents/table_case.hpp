@@ -64,6 +64,12 @@ struct MadeTable {
 /// By the builder, in binary32 where `table_for_format` allows it.
 MadeTable make_table(const TableCase& asked);
 
+/// What a renderer's author wants to know of the table, beside it; `name` is what its file is called.
+nlohmann::ordered_json table_description(const TableCase& asked, const MadeTable& table, const std::string& name);
+
+/// How many of the table's numbers its format cannot hold, so that they are clamped.
+std::int64_t clamped_numbers(const TableCase& asked, const MadeTable& table);
+
 // A table that was made for the case elsewhere, as by a shader.
 
 MadeTable judged(const TableCase& asked, const TableBuilder& builder, const Table<double>& table);

@@ -46,6 +46,7 @@ std::string reading_of(const VolumeFile& file) {
 }
 
 std::filesystem::path find_volume_file(const VolumeFile& file, const VolumeAccess& volumes) {
+  if (volumes.in_memory.contains(file.name)) return file.name;
   auto beside = file.owner.resolve(file.name);
   std::error_code ignored;
   if (std::filesystem::is_regular_file(beside, ignored)) return beside;
@@ -65,6 +66,13 @@ std::vector<std::string> warnings_of(const Volume& volume, const std::string& fi
 }
 
 SourcedVolume read_sourced_volume(const VolumeFile& file, const VolumeAccess& volumes) {
+  if (const auto found = volumes.in_memory.find(file.name); found != volumes.in_memory.end()) {
+    for (const std::string_view member : {"repair", "nan", "time_step"})
+      if (const auto stated = file.owner.find(member)) stated->refuse_value(fmt::format("{} of a file only", member));
+    SourcedVolume result{.grid = *found->second, .file = file.name};
+    if (file.choices.spacing) result.grid.spacing = *file.choices.spacing;
+    return result;
+  }
   const auto path = find_volume_file(file, volumes);
   VolumeChoices choices = file.choices;
   if (!choices.nan) choices.nan = volumes.nan;

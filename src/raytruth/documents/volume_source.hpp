@@ -6,6 +6,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +19,7 @@ struct VolumeAccess {
   std::vector<std::filesystem::path> folders = {};
   std::optional<double> nan = {};  ///< what voxels become that are NaN, where a document does not say
   std::uint64_t memory_limit = memory_of_machine();
+  std::map<std::string, std::shared_ptr<const Grid>> in_memory = {};  ///< by the names that documents call them
 };
 
 /// A volume's file as a document names it.
@@ -33,7 +36,7 @@ VolumeFile read_volume_file(const JsonReader& owner);
 /// What is said of the file beside its name, as text: the same text, the same voxels.
 std::string reading_of(const VolumeFile& file);
 
-/// Where it is. Throws VolumeAbsent.
+/// Where it is; of one in memory its name. Throws VolumeAbsent.
 std::filesystem::path find_volume_file(const VolumeFile& file, const VolumeAccess& volumes);
 
 /// Voxels from wherever a document says.

@@ -44,8 +44,9 @@ double six_digits(double x) {
 }  // namespace
 
 Camera fitted_camera(const std::array<std::int64_t, 3>& grid_size, const std::array<double, 3>& spacing,
-                     const std::array<std::int64_t, 2>& image_size) {
+                     const std::array<std::int64_t, 2>& image_size, const std::array<double, 3>& from) {
   constexpr double fov_y = 30;
+  const Eigen::Vector3d direction = Eigen::Vector3d(from[0], from[1], from[2]).normalized();
   Eigen::Vector3d middle;
   Eigen::Vector3d sides;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -56,9 +57,11 @@ Camera fitted_camera(const std::array<std::int64_t, 3>& grid_size, const std::ar
   }
   const double narrower = std::min(1.0, static_cast<double>(image_size[0]) / static_cast<double>(image_size[1]));
   const double half_angle = std::atan(narrower * std::tan(fov_y / 2 * std::numbers::pi / 180));
-  const Eigen::Vector3d eye =
-      middle + Eigen::Vector3d(1, 0.75, -1.5).normalized() * (sides.norm() / 2 / std::sin(half_angle));
+  const Eigen::Vector3d eye = middle + direction * (sides.norm() / 2 / std::sin(half_angle));
+  // Upwards is along y, unless one looks along it.
+  constexpr double steep = 0.9;
   Camera camera{.up = {0, 1, 0}, .projection = Perspective{fov_y}, .size = image_size};
+  if (std::abs(direction[1]) > steep) camera.up = {0, 0, 1};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<Eigen::Index>(axis);
     camera.eye[axis] = six_digits(eye[i]);

@@ -31,10 +31,12 @@ struct Camera {
   std::array<std::int64_t, 2> size{};  ///< width and height in pixels
 };
 
-/// A perspective view of the whole grid, from its front, above and to the right: the sphere around it fills the
-/// narrower side of an image of this size. Its numbers have six digits, so that they can be copied.
+/// A perspective view of the whole grid, by default from its front, above and to the right: the sphere around it fills
+/// the narrower side of an image of this size. `from` points from its middle to the eye, in any length. The numbers
+/// have six digits, so that they can be copied.
 Camera fitted_camera(const std::array<std::int64_t, 3>& grid_size, const std::array<double, 3>& spacing,
-                     const std::array<std::int64_t, 2>& image_size);
+                     const std::array<std::int64_t, 2>& image_size,
+                     const std::array<double, 3>& from = {1, 0.75, -1.5});
 
 /// What a pixel sees.
 struct PixelRay {

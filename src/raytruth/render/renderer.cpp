@@ -94,7 +94,7 @@ struct Renderer::Parts {
   std::optional<CameraRounding> camera_rounding;
 };
 
-Renderer::Renderer(Scene scene) : parts_(std::make_unique<const Parts>(std::move(scene))) {}
+Renderer::Renderer(Scene scene) : parts_(std::make_unique<Parts>(std::move(scene))) {}
 Renderer::~Renderer() = default;
 
 Rendering Renderer::render(const std::function<void(std::size_t, std::size_t)>& progress) const {
@@ -133,6 +133,19 @@ Rendering Renderer::render(const std::function<void(std::size_t, std::size_t)>& 
   });
   result.not_converged = not_converged;
   return result;
+}
+
+std::vector<PixelLight> Renderer::light_of(std::span<const PixelRay> rays) const {
+  std::vector<PixelLight> light(rays.size());
+  tbb::enumerable_thread_specific<PixelRenderer> renderers(parts_->make_renderer);
+  tbb::parallel_for(std::size_t{0}, rays.size(), [&](std::size_t i) { light[i] = renderers.local()(rays[i]); });
+  return light;
+}
+
+Scene Renderer::take_scene() && {
+  Scene scene = std::move(parts_->prepared.scene);
+  parts_.reset();
+  return scene;
 }
 
 }  // namespace raytruth

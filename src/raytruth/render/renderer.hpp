@@ -1,12 +1,15 @@
 #pragma once
 
 #include "raytruth/images/image.hpp"
+#include "raytruth/render/camera.hpp"
+#include "raytruth/render/pixel_light.hpp"
 #include "raytruth/render/scene.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace raytruth {
@@ -50,9 +53,15 @@ class Renderer {
   /// Calls `progress(done, of)` after some tiles, by one thread at a time. Throws InputError for too many samples.
   [[nodiscard]] Rendering render(const std::function<void(std::size_t, std::size_t)>& progress = {}) const;
 
+  /// The light of some rays, of any camera's pixels, on all cores; radii are for rounded rays.
+  [[nodiscard]] std::vector<PixelLight> light_of(std::span<const PixelRay> rays) const;
+
+  /// The scene, for another renderer; this one is of no more use.
+  [[nodiscard]] Scene take_scene() &&;
+
  private:
   struct Parts;
-  std::unique_ptr<const Parts> parts_;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace raytruth

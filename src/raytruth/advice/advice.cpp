@@ -1,0 +1,348 @@
+#include "raytruth/advice/advice.hpp"
+
+#include "raytruth/core/error.hpp"
+#include "raytruth/core/named.hpp"
+#include "raytruth/core/random.hpp"
+#include "raytruth/images/image_file.hpp"
+#include "raytruth/render/camera.hpp"
+#include "raytruth/render/renderer.hpp"
+#include "raytruth/schemes/integral_schemes.hpp"
+#include "raytruth/schemes/scheme_integral.hpp"
+#include "raytruth/signals/cell_walk.hpp"
+#include "raytruth/signals/ray_field.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+namespace raytruth {
+
+namespace {
+
+constexpr std::array steps{4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625};
+constexpr std::array sampled_schemes{"riemann_mid", "trapezoid", "simpson", "sampled_virtual_catmull_rom_3"};
+constexpr std::array table_format_words{"unorm8", "float16", "float32"};
+constexpr std::int64_t first_rays = 512;
+// Tables are tried at so many steps, the longest of those at which exact slabs do not exceed the error already.
+constexpr std::size_t steps_with_tables = 3;
+
+/// What a slab's table of a scheme may be.
+struct TableChoice {
+  std::string_view scheme;
+  std::string_view builder;
+  std::vector<std::size_t> sizes;
+  std::size_t axes;
+};
+
+std::vector<TableChoice> table_choices(const Scene& scene) {
+  // A lit slab has a table for each of its moments, so a larger one takes long, and much memory.
+  if (scene.shading) return {{"order1", "exact", {64, 128, 256}, 2}};
+  return {{"order1", "exact", {32, 64, 128, 256, 512, 1024}, 2}, {"order2", "second_order_exact", {32, 64}, 3}};
+}
+
+/// The scene without what ways differ in, seen cleanly.
+Scene bare(const Scene& scene) {
+  Scene result = scene;
+  result.scheme = "reference";
+  result.step.reset();
+  result.table.reset();
+  result.opaque = std::numeric_limits<double>::infinity();
+  result.empty_space.reset();
+  result.covers_camera = false;
+  return result;
+}
+
+/// Renders rays of one scene by one way after the other, without a copy of its voxels for each.
+class Looker {
+ public:
+  explicit Looker(const Scene& scene) : original_(bare(scene)), scene_(original_) {}
+
+  /// Throws InputError for a way that cannot render the scene.
+  std::vector<PixelLight> operator()(const Way& way, const std::vector<PixelRay>& rays) {
+    scene_.scheme = way.scheme;
+    scene_.step = way.step;
+    scene_.table = way.table;
+    return render(rays);
+  }
+
+  std::vector<PixelLight> truth(const std::vector<PixelRay>& rays) {
+    scene_ = original_;
+    if (scene_.shading) scene_.shading->method = nullptr;  // every point has its own normal
+    auto light = render(rays);
+    scene_ = original_;
+    return light;
+  }
+
+ private:
+  std::vector<PixelLight> render(const std::vector<PixelRay>& rays) {
+    try {
+      Renderer renderer(std::move(scene_));
+      auto light = renderer.light_of(rays);
+      scene_ = std::move(renderer).take_scene();
+      return light;
+    } catch (const InputError&) {
+      scene_ = original_;
+      throw;
+    }
+  }
+
+  Scene original_;
+  Scene scene_;
+};
+
+/// So many rays of the views, of pixels that chance takes from equal parts of the images.
+std::vector<PixelRay> rays_of_round(const AdviceRequest& request, std::int64_t count, std::uint32_t round) {
+  std::vector<PixelRay> rays;
+  const auto views = static_cast<std::int64_t>(request.views.size());
+  const double per_view = std::max(1.0, static_cast<double>(count) / static_cast<double>(views));
+  std::uint64_t index = 0;
+  for (const Camera& camera : request.views) {
+    const CameraView view(camera, request.scene.grid.spacing);
+    const auto width = static_cast<double>(camera.size[0]);
+    const auto height = static_cast<double>(camera.size[1]);
+    const double columns = std::clamp(std::round(std::sqrt(per_view * width / height)), 1.0, width);
+    const double rows = std::clamp(std::round(per_view / columns), 1.0, height);
+    for (double row = 0; row < rows; ++row)
+      for (double column = 0; column < columns; ++column) {
+        const auto chance = random_numbers(request.seed, RandomStream::pixels, index++, round);
+        const auto place = [](double part, double of, double pixels, double share) {
+          return std::min(static_cast<std::int64_t>((part + share) * pixels / of),
+                          static_cast<std::int64_t>(pixels) - 1);
+        };
+        rays.push_back(view(place(column, columns, width, chance[0]), place(row, rows, height, chance[1])));
+      }
+  }
+  return rays;
+}
+
+double encoded(double light) { return srgb_of(std::clamp(light, 0.0, 1.0)); }
+
+/// The error of a pixel; of `rmse` its square.
+double error_of(ErrorKind kind, const Eigen::Array4d& light, const Eigen::Array4d& truth) {
+  double result = 0;
+  for (int channel = 0; channel < 3; ++channel) {
+    const double difference = kind == ErrorKind::encoded ? encoded(light[channel]) - encoded(truth[channel])
+                                                         : light[channel] - truth[channel];
+    if (kind == ErrorKind::rmse)
+      result += difference * difference / 3;
+    else
+      result = std::max(result, std::abs(difference));
+  }
+  return result;
+}
+
+/// A way on its way to a decision.
+struct Candidate {
+  Way way;
+  bool is_guide = false;  ///< exact slabs, which renderers do not have: what tables of any size come to
+  std::vector<double> errors = {};
+};
+
+/// Samples and look-ups of a way for a pixel.
+void count_reads(Way& way, const Scene& scene, const std::vector<PixelRay>& rays) {
+  const IntegralScheme& scheme = *find_named(catalogue::integral_schemes(), way.scheme);
+  SchemeIntegral integrate(scene.transfer, scene.emission);
+  Samples<double> samples;
+  // Few rays tell a mean well.
+  constexpr std::size_t most = 64;
+  const std::size_t every = std::max<std::size_t>(1, rays.size() / most);
+  double counted = 0;
+  for (std::size_t i = 0; i < rays.size(); i += every) {
+    std::visit(
+        [&]<class Field>(const Field& field) {
+          Chain<Field::degree> chain;
+          field.trace(rays[i].ray, chain);
+          scale_lengths(chain, rays[i].length_unit);
+          take_samples(chain, way.step, samples);
+          const Outcome<> outcome = integrate(scheme, chain, samples);
+          way.samples += static_cast<double>(outcome.fetches);
+          way.look_ups += static_cast<double>(way.table ? outcome.composites : outcome.lookups);
+        },
+        ray_field(scene.grid, scene.field, scene.border));
+    ++counted;
+  }
+  way.samples /= counted;
+  way.look_ups /= counted;
+}
+
+bool is_cheaper(const Way& a, const Way& b) {
+  return std::tuple(a.reads(), a.table_bytes) < std::tuple(b.reads(), b.table_bytes);
+}
+
+/// Looks for the advice.
+class Search {
+ public:
+  Search(const AdviceRequest& request, const std::function<void(std::size_t, std::size_t)>& progress)
+      : request_(request), progress_(progress), look_(request.scene) {
+    for (const Camera& camera : request.views) advice_.pixels += camera.size[0] * camera.size[1];
+    advice_.is_certified = !request.scene.shading.has_value();
+    add_ways_without_tables();
+  }
+
+  Advice run() {
+    std::int64_t count = first_rays;
+    for (std::uint32_t round = 0; !candidates_.empty(); ++round) {
+      look_at(rays_of_round(request_, count, round), round == 0);
+      if (advice_.rays >= request_.most_rays || !is_open()) break;
+      count = std::min(advice_.rays, request_.most_rays - advice_.rays);
+    }
+    return conclude();
+  }
+
+ private:
+  void add(Way way, bool is_guide = false) { candidates_.push_back({std::move(way), is_guide}); }
+
+  void add_ways_without_tables() {
+    for (const double step : steps) {
+      if (!request_.scene.shading)
+        for (const char* const scheme : sampled_schemes) add({.scheme = scheme, .step = step});
+      for (const TableChoice& choice : table_choices(request_.scene))
+        add({.scheme = std::string(choice.scheme), .step = step}, true);
+    }
+    if (!request_.scene.shading) add({.scheme = "cell_cubic"});
+  }
+
+  void add_ways_with_tables() {
+    for (const TableChoice& choice : table_choices(request_.scene)) {
+      std::size_t tried = 0;
+      // Copied: adding candidates moves them.
+      std::vector<Way> guides;
+      for (const Candidate& candidate : candidates_)
+        if (candidate.is_guide && candidate.way.scheme == choice.scheme && candidate.way.refusal.empty() &&
+            candidate.way.error.low <= request_.error)
+          guides.push_back(candidate.way);
+      for (const Way& guide : guides) {
+        if (tried++ == steps_with_tables) break;
+        for (const std::size_t size : choice.sizes)
+          for (const char* const format : table_format_words) {
+            SceneTable table{
+                .builder = std::string(choice.builder), .size = size, .format = *find_named(table_formats, format)};
+            Way way{.scheme = guide.scheme, .step = guide.step, .table = table};
+            way.table_bytes = 4 * table.format.bytes;
+            for (std::size_t axis = 0; axis < choice.axes; ++axis) way.table_bytes *= size;
+            add(std::move(way));
+          }
+      }
+    }
+  }
+
+  void look_at(const std::vector<PixelRay>& rays, bool is_first) {
+    const auto truth = look_.truth(rays);
+    if (is_first && std::none_of(rays.begin(), rays.end(), [this](const PixelRay& ray) { return meets(ray); }))
+      throw InputError("no pixel of the views sees the volume; a scene without a camera gets views that do");
+    advice_.rays += static_cast<std::int64_t>(rays.size());
+    for (const PixelLight& light : truth) advice_.truth_radius = std::max(advice_.truth_radius, light.radius);
+    std::size_t begin = 0;
+    while (begin < candidates_.size()) {
+      const std::size_t end = candidates_.size();
+      for (std::size_t i = begin; i < end; ++i) {
+        if (is_first || is_followed(candidates_[i])) look_at(candidates_[i], rays, truth, is_first);
+        if (progress_) progress_(i + 1, end);
+      }
+      if (is_first && begin == 0) add_ways_with_tables();
+      begin = end;
+    }
+    choose();
+  }
+
+  [[nodiscard]] bool meets(const PixelRay& ray) const {
+    const Span inside = clip(request_.scene.grid.size, request_.scene.border, ray.ray.origin, ray.ray.direction);
+    return inside.begin < inside.end;
+  }
+
+  void look_at(Candidate& candidate, const std::vector<PixelRay>& rays, const std::vector<PixelLight>& truth,
+               bool is_first) {
+    Way& way = candidate.way;
+    try {
+      if (is_first) count_reads(way, request_.scene, rays);
+      const auto light = look_(way, rays);
+      for (std::size_t i = 0; i < rays.size(); ++i)
+        candidate.errors.push_back(error_of(request_.kind, light[i].light, truth[i].light));
+    } catch (const InputError& error) {
+      way.refusal = error.what();
+      return;
+    }
+    way.rays = static_cast<std::int64_t>(candidate.errors.size());
+    way.error = request_.kind == ErrorKind::rmse
+                    ? rmse_of_sample(candidate.errors, request_.confidence)
+                    : largest_of_sample(candidate.errors, static_cast<double>(advice_.pixels));
+    way.standing = way.error.high <= request_.error ? Standing::keeps
+                   : way.error.low > request_.error ? Standing::exceeds
+                                                    : Standing::undecided;
+  }
+
+  void choose() {
+    best_ = nullptr;
+    for (const Candidate& candidate : candidates_)
+      if (!candidate.is_guide && candidate.way.refusal.empty() && candidate.way.standing == Standing::keeps &&
+          (best_ == nullptr || is_cheaper(candidate.way, best_->way)))
+        best_ = &candidate;
+  }
+
+  /// Whether more rays of it may change the advice. The best is followed too: it might not keep the error after all.
+  [[nodiscard]] bool is_followed(const Candidate& candidate) const {
+    if (candidate.is_guide || !candidate.way.refusal.empty()) return false;
+    if (&candidate == best_) return true;
+    return candidate.way.standing == Standing::undecided && (best_ == nullptr || is_cheaper(candidate.way, best_->way));
+  }
+
+  [[nodiscard]] bool is_open() const {
+    return std::any_of(candidates_.begin(), candidates_.end(),
+                       [this](const Candidate& candidate) { return &candidate != best_ && is_followed(candidate); });
+  }
+
+  Advice conclude() {
+    advice_.is_settled = !is_open();
+    for (Candidate& candidate : candidates_) {
+      if (candidate.is_guide) continue;
+      if (candidate.way.standing == Standing::undecided && best_ != nullptr && is_cheaper(best_->way, candidate.way))
+        candidate.way.standing = Standing::not_needed;
+      advice_.ways.push_back(candidate.way);
+    }
+    std::stable_sort(advice_.ways.begin(), advice_.ways.end(), is_cheaper);
+    for (std::size_t i = 0; i < advice_.ways.size(); ++i) {
+      const Way& way = advice_.ways[i];
+      if (!way.refusal.empty()) continue;
+      if (way.standing == Standing::keeps) {
+        advice_.best = i;
+        break;
+      }
+      if (!advice_.next_cheaper || way.error.value <= advice_.ways[*advice_.next_cheaper].error.value)
+        advice_.next_cheaper = i;
+    }
+    return std::move(advice_);
+  }
+
+  const AdviceRequest& request_;
+  const std::function<void(std::size_t, std::size_t)>& progress_;
+  Looker look_;
+  std::vector<Candidate> candidates_;
+  const Candidate* best_ = nullptr;
+  Advice advice_;
+};
+
+}  // namespace
+
+Advice advise(const AdviceRequest& request, const std::function<void(std::size_t, std::size_t)>& progress) {
+  return Search(request, progress).run();
+}
+
+std::vector<Camera> views_around(const Grid& grid, std::size_t count, const std::array<std::int64_t, 2>& image_size) {
+  std::vector<Camera> views;
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  for (std::size_t i = 0; i < count; ++i) {
+    // A spiral from pole to pole, in equal steps of height (R. Swinbank, R. J. Purser, Fibonacci grids, 2006).
+    const double y = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(count);
+    const double radius = std::sqrt(1 - y * y);
+    const double angle = golden * static_cast<double>(i);
+    views.push_back(
+        fitted_camera(grid.size, grid.spacing, image_size, {radius * std::cos(angle), y, radius * std::sin(angle)}));
+  }
+  return views;
+}
+
+}  // namespace raytruth
