@@ -9,19 +9,18 @@ import raytruth
 
 def my_renderer(vector, steps=200):
     """A ray in samples, composited front to back."""
-    points = vector["transfer_function"]["points"]
-    s_of = [point["s"] for point in points]
-    if "slab" in vector:
-        length, scalars = vector["slab"]["length"], numpy.linspace(vector["slab"]["front"], vector["slab"]["back"], steps)
+    middles = (numpy.arange(steps) + 0.5) / steps
+    if "slab" in vector:  # the scalar is linear from front to back
+        slab = vector["slab"]
+        length, scalars = slab["length"], slab["front"] + middles * (slab["back"] - slab["front"])
     else:
         signal = raytruth.Signal(vector["signal"]["breaks"], vector["signal"]["coefficients"])
-        length, scalars = signal.length, signal.at((numpy.arange(steps) + 0.5) / steps * signal.length)
+        length, scalars = signal.length, signal.at(middles * signal.length)
+    extinction, light = raytruth.TransferFunction(vector["transfer_function"]).at(scalars)
     color, transmittance = numpy.zeros(3), 1.0
-    for s in scalars:
-        extinction = numpy.interp(s, s_of, [point["extinction"] for point in points])
-        light = numpy.array([numpy.interp(s, s_of, [point["color"][c] for point in points]) for c in range(3)])
-        opacity = 1 - numpy.exp(-extinction * length / steps)
-        color += transmittance * light * (opacity if vector["emission"] == "associated" else length / steps)
+    for tau, c in zip(extinction, light):
+        opacity = 1 - numpy.exp(-tau * length / steps)
+        color += transmittance * c * (opacity if vector["emission"] == "associated" else length / steps)
         transmittance *= 1 - opacity
     return [*color, 1 - transmittance]
 

@@ -21,6 +21,5 @@ for size in (32, 64, 128, 256):
             "format": number_format,
         }
         table = raytruth.table(case)
-        largest = max(part["max"] for part in table.description["error"].values() if isinstance(part, dict) and "max" in part)
-        print(f"{size:<5} {number_format:<9} {table.values.nbytes:>8}    {largest:.1e}")
-numpy.save("table.npy", table.values)  # [front, back, (red, green, blue, opacity)]
+        print(f"{size:<5} {number_format:<9} {table.values.nbytes:>8}    {table.description['error']['max']:.1e}")
+numpy.save("table.npy", table.values)  # [back, front, (red, green, blue, opacity)]

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -204,9 +204,11 @@ std::string advice_text(const AdviceDocument& asked, const Advice& advice) {
   if (!advice.is_settled) text += "not settled     a cheaper way may keep it too: --rays allows more to be looked at\n";
 
   text += fmt::format("\n{:>9}  {:>9}  {:>9}  {:<10}  {}\n", "reads", "error", "at most", "standing", "way");
-  for (std::size_t i = 0; i < advice.ways.size(); ++i) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < advice.ways.size() && i <= advice.best.value_or(advice.ways.size()); ++i) {
     const Way& way = advice.ways[i];
-    if (!way.refusal.empty() || way.standing == Standing::not_needed) continue;
+    if (!way.refusal.empty() || way.error.value >= least) continue;  // a cheaper one is as good
+    least = way.error.value;
     text += fmt::format("{:>9.0f}  {:>9.2g}  {:>9.2g}  {:<10}  {}{}\n", way.reads(), way.error.value, way.error.high,
                         standing_names[static_cast<std::size_t>(way.standing)], way_text(way),
                         advice.best == i ? "  <-" : "");

@@ -4,6 +4,7 @@
 
 namespace raytruth {
 
+extern const Measure advise_holds_measure;
 extern const Measure cell_cubic_measure;
 extern const Measure clamps_measure;
 extern const Measure cone_lobe_measure;
@@ -61,6 +62,7 @@ extern const Measure xi_versus_integral_measure;
 std::span<const Measure* const> measures() {
   static constexpr std::array list{
       &signal_error_measure,
+      &advise_holds_measure,
       &cell_cubic_measure,
       &turning_points_measure,
       &quadratic_gray_fit_measure,

@@ -113,12 +113,12 @@ py::object to_python(const Json& json) {
     case Json::value_t::object: {
       py::dict members;
       for (const auto& [name, value] : json.items()) members[py::str(name)] = to_python(value);
-      return std::move(members);
+      return members;
     }
     case Json::value_t::array: {
       py::list items;
       for (const Json& item : json) items.append(to_python(item));
-      return std::move(items);
+      return items;
     }
     case Json::value_t::string:
       return py::str(json.get_ref<const std::string&>());

@@ -134,7 +134,7 @@ py::object score_answers(py::handle vectors_document, py::handle answers, const 
   return to_python(per_vector ? scored_json(scored) : levels_json(score(scored)));
 }
 
-py::object list(const std::string& kind, const std::optional<std::string>& data) {
+py::object available(const std::string& kind, const std::optional<std::string>& data) {
   const auto& kinds = listed_kinds();
   if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
     throw InputError(fmt::format("kind: found {}; {} is allowed", kind, fmt::join(kinds, ", ")));
@@ -234,14 +234,14 @@ void add_documents(py::module_& module) {
   module.def("score", &score_answers, py::arg("vectors"), py::arg("answers"), py::kw_only(),
              py::arg("emission") = py::none(), py::arg("per_vector") = false,
              "How many digits are right in a program's answers to the vectors.");
-  module.def("list", &list, py::arg("kind"), py::kw_only(), py::arg("data") = py::none(),
+  module.def("available", &available, py::arg("kind"), py::kw_only(), py::arg("data") = py::none(),
              "What there is of a kind: schemes, shadings, tables, experiments, volumes and so on.");
   module.def("advise", &give_advice, py::arg("scene"), py::arg("error"), py::kw_only(), py::arg("of") = "rmse",
              py::arg("views") = 6, py::arg("rays") = 16384, py::arg("seed") = 1, py::arg("data") = py::none(),
              py::arg("nan") = py::none(), py::arg("threads") = 0,
              "The cheapest way to render a scene that keeps an error, as `raytruth advise` finds it.");
   module.def(
-      "schemes", [] { return list("schemes", {}); }, "What list('schemes') gives.");
+      "schemes", [] { return available("schemes", {}); }, "What available('schemes') gives.");
   module.def("run", &run, py::arg("experiment"), py::kw_only(), py::arg("folder") = py::none(),
              py::arg("profile") = "full", py::arg("seed") = py::none(), py::arg("gl") = py::none(),
              py::arg("data") = py::none(), py::arg("programs") = false, py::arg("resume") = false,

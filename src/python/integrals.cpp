@@ -152,8 +152,8 @@ class RayList {
         throw InputError("lengths: found more than one axis; a number, or one of each ray, is allowed");
       lengths_ = *lengths;
     }
-    count_ = std::max(origins_.shape(0), directions_.shape(0));
-    if (lengths_) count_ = std::max(count_, lengths_->size());
+    for (const py::ssize_t count : {origins_.shape(0), directions_.shape(0), lengths_ ? lengths_->size() : 1})
+      if (count_ == 1) count_ = count;
     check("origins", origins_.shape(0));
     check("directions", directions_.shape(0));
     if (lengths_) check("lengths", lengths_->size());
@@ -188,7 +188,7 @@ class RayList {
   Numbers origins_;
   Numbers directions_;
   std::optional<Numbers> lengths_;
-  py::ssize_t count_ = 0;
+  py::ssize_t count_ = 1;
 };
 
 /// What came out for many rays, as arrays.
@@ -358,7 +358,7 @@ Integral slab(py::handle transfer_function, double front, double back, double le
   const TransferFunction transfer = transfer_function_of(transfer_function);
   Chain<3> chain;
   const double third = (back - front) / 3;
-  chain.pieces.push_back({{{front, front + third, back - third, back}}, 0, length});
+  chain.pieces.push_back({0.0, length, {{front, front + third, back - third, back}}});
   chain.end = length;
   // What rounding moves the two points between, which would be exact for a line.
   SignalError error{.of_pieces = {0x1p-51 * (std::abs(front) + std::abs(back))}, .exact_ends = {true}};

@@ -294,7 +294,8 @@ class Table:
 
     @property
     def values(self) -> NDArray[Any]:
-        """Its numbers, in the format asked for: those of the .npy that `raytruth table` writes."""
+        """Its numbers, in the format asked for: those of the .npy that `raytruth table` writes:
+        [back scalar, front scalar, (red, green, blue, opacity)] of most builders; description["axes"] says it."""
 
     @property
     def description(self) -> dict[str, Any]:
@@ -316,12 +317,12 @@ def score(
     """Digits that are right, a row for each level, or each vector. `answers`: {id: (red, green, blue, opacity)}, or a CSV
     file with the header id,r,g,b,opacity."""
 
-def list(kind: str, *, data: str | None = None) -> list[dict[str, Any]]:
+def available(kind: str, *, data: str | None = None) -> list[dict[str, Any]]:
     """What there is: "schemes", "shadings", "tables", "experiments", "volumes", "signals", "fields", "transfers",
     "samplings" or "measures"."""
 
 def schemes() -> list[dict[str, Any]]:
-    """list("schemes"): name, summary, source, family, orders."""
+    """available("schemes"): name, summary, source, family, orders."""
 
 def run(
     experiment: _Document,

@@ -104,7 +104,7 @@ TransferFunction::Integrals::Integrals(const PiecewiseLinear& function)
 
 TransferFunction::TransferFunction(PiecewiseLinear transfer, nlohmann::ordered_json description)
     : integrals_(std::make_shared<Integrals>(transfer)), description_(std::move(description)) {
-  reference(Emission::associated);
+  RayIntegral(integrals_->transfer, Emission::associated);
 }
 
 RayIntegral& TransferFunction::reference(Emission emission) const {

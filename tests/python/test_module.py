@@ -30,7 +30,7 @@ RAY = {
     "signal": {"kind": "piecewise_polynomial", "breaks": [0, 1, 2.5], "coefficients": [[0.1, 0.5], [0.6, -0.2, 0.05, 0.01]]},
     "transfer_function": POINTS,
     "sampling": {"kind": "constant", "step": 0.25},
-    "schemes": ["reference", "order0_mid", "order1", "order2", "cell_cubic"],
+    "schemes": ["reference", "order0_mid", "order1", "order2", "simpson"],
 }
 TABLE = {"transfer_function": POINTS, "builder": "exact", "size": 24, "length": 1, "range": [0, 1], "format": "float16"}
 CAMERA = {"eye": [20, -30, 14], "target": [3.5, 4, 4.5], "up": [0, 0, 1], "height": 14, "size": [12, 9]}
@@ -124,7 +124,7 @@ class SameAsTheProgram(ModuleTest):
         table = raytruth.table({**TABLE, "format": "float64"}).values
         for front, back in ((0, 23), (5, 5), (20, 3)):
             found = raytruth.slab(POINTS, front / 23, back / 23)
-            self.assertLess(numpy.abs([*found.color, found.opacity] - table[front, back]).max(), 1e-13)
+            self.assertLess(numpy.abs([*found.color, found.opacity] - table[back, front]).max(), 1e-13)
             self.assertLess(found.radius, 1e-13)
 
     def test_tables(self):
@@ -187,7 +187,7 @@ class SameAsTheProgram(ModuleTest):
     def test_lists(self):
         everything = json.loads(self.program("list", "--json"))
         for kind in ("schemes", "shadings", "tables", "measures", "signals"):
-            self.assertEqual(raytruth.list(kind), everything[kind])
+            self.assertEqual(raytruth.available(kind), everything[kind])
         self.assertEqual(raytruth.schemes(), everything["schemes"])
         self.assertIn(raytruth.__version__, self.program("--version").decode())
 
@@ -221,7 +221,7 @@ class Arrays(ModuleTest):
 
     def test_two_volumes_of_one_name(self):
         scenes = [
-            {"volume": raytruth.Volume(voxels), "transfer_function": POINTS, "camera": CAMERA, "schemes": ["order1"], "step": 1}
+            {"volume": raytruth.Volume(voxels), "transfer_function": POINTS, "camera": CAMERA, "scheme": "order1", "step": 1}
             for voxels in (numpy.zeros((4, 4, 4)), noise())
         ]
         empty, full = raytruth.evaluate(scenes)
@@ -335,8 +335,11 @@ class Manners(ModuleTest):
     def test_the_stubs_are_the_modules(self):
         if not shutil.which("stubtest"):
             self.skipTest("stubtest of mypy is not installed (package mypy)")
+        # Of every class of pybind11's the metaclass is its own; those that nobody makes have an initialiser that refuses.
+        classes = "Image|Integral|Rays|Signal|Table|TransferFunction|Volume"
+        (self.folder / "allowed").write_text(f"raytruth\\.({classes})\nraytruth\\.(Image|Integral|Rays|Table)\\.__init__\n")
         environment = {**os.environ, "MYPYPATH": os.environ["PYTHONPATH"], "MYPY_CACHE_DIR": str(self.folder)}
-        done = subprocess.run([shutil.which("stubtest"), "raytruth"], cwd=self.folder, env=environment, capture_output=True, text=True)
+        done = subprocess.run([shutil.which("stubtest"), "raytruth", "--allowlist", "allowed"], cwd=self.folder, env=environment, capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
 

@@ -27,8 +27,12 @@ constexpr std::array steps{4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625};
 constexpr std::array sampled_schemes{"riemann_mid", "trapezoid", "simpson", "sampled_virtual_catmull_rom_3"};
 constexpr std::array table_format_words{"unorm8", "float16", "float32"};
 constexpr std::int64_t first_rays = 512;
-// Tables are tried at so many steps, the longest of those at which exact slabs do not exceed the error already.
-constexpr std::size_t steps_with_tables = 3;
+constexpr std::int64_t few_pixels = 4096;  // all of which are looked at
+// Tables are tried at so many steps, the longest of those at which exact slabs keep the error, or nearly.
+constexpr std::size_t steps_with_tables = 2;
+constexpr double nearly = 1.25;
+// A larger table does not help where the error is within this factor of that of exact slabs.
+constexpr double as_good_as_exact = 1.02;
 
 /// What a slab's table of a scheme may be.
 struct TableChoice {
@@ -41,7 +45,8 @@ struct TableChoice {
 std::vector<TableChoice> table_choices(const Scene& scene) {
   // A lit slab has a table for each of its moments, so a larger one takes long, and much memory.
   if (scene.shading) return {{"order1", "exact", {64, 128, 256}, 2}};
-  return {{"order1", "exact", {32, 64, 128, 256, 512, 1024}, 2}, {"order2", "second_order_exact", {32, 64}, 3}};
+  // Every entry of a table of parabolas is integrated exactly: larger ones take longer than the rest of the search.
+  return {{"order1", "exact", {32, 64, 128, 256, 512, 1024}, 2}, {"order2", "second_order_exact", {32}, 3}};
 }
 
 /// The scene without what ways differ in, seen cleanly.
@@ -94,6 +99,16 @@ class Looker {
   Scene scene_;
 };
 
+std::vector<PixelRay> all_rays(const AdviceRequest& request) {
+  std::vector<PixelRay> rays;
+  for (const Camera& camera : request.views) {
+    const CameraView view(camera, request.scene.grid.spacing);
+    for (std::int64_t row = 0; row < camera.size[1]; ++row)
+      for (std::int64_t column = 0; column < camera.size[0]; ++column) rays.push_back(view(column, row));
+  }
+  return rays;
+}
+
 /// So many rays of the views, of pixels that chance takes from equal parts of the images.
 std::vector<PixelRay> rays_of_round(const AdviceRequest& request, std::int64_t count, std::uint32_t round) {
   std::vector<PixelRay> rays;
@@ -138,12 +153,11 @@ double error_of(ErrorKind kind, const Eigen::Array4d& light, const Eigen::Array4
 /// A way on its way to a decision.
 struct Candidate {
   Way way;
-  bool is_guide = false;  ///< exact slabs, which renderers do not have: what tables of any size come to
   std::vector<double> errors = {};
 };
 
-/// Samples and look-ups of a way for a pixel.
-void count_reads(Way& way, const Scene& scene, const std::vector<PixelRay>& rays) {
+/// Samples and look-ups of a way for a pixel; one look-up for a slab where slabs are read from a table.
+void count_reads(Way& way, bool has_slabs, const Scene& scene, const std::vector<PixelRay>& rays) {
   const IntegralScheme& scheme = *find_named(catalogue::integral_schemes(), way.scheme);
   SchemeIntegral integrate(scene.transfer, scene.emission);
   Samples<double> samples;
@@ -160,7 +174,7 @@ void count_reads(Way& way, const Scene& scene, const std::vector<PixelRay>& rays
           take_samples(chain, way.step, samples);
           const Outcome<> outcome = integrate(scheme, chain, samples);
           way.samples += static_cast<double>(outcome.fetches);
-          way.look_ups += static_cast<double>(way.table ? outcome.composites : outcome.lookups);
+          way.look_ups += static_cast<double>(has_slabs ? outcome.composites : outcome.lookups);
         },
         ray_field(scene.grid, scene.field, scene.border));
     ++counted;
@@ -184,6 +198,11 @@ class Search {
   }
 
   Advice run() {
+    has_all_ = advice_.pixels <= few_pixels;
+    if (has_all_) {
+      look_at(all_rays(request_), true);
+      return conclude();
+    }
     std::int64_t count = first_rays;
     for (std::uint32_t round = 0; !candidates_.empty(); ++round) {
       look_at(rays_of_round(request_, count, round), round == 0);
@@ -194,39 +213,53 @@ class Search {
   }
 
  private:
-  void add(Way way, bool is_guide = false) { candidates_.push_back({std::move(way), is_guide}); }
+  void add(Way way) { candidates_.push_back({std::move(way)}); }
 
   void add_ways_without_tables() {
     for (const double step : steps) {
       if (!request_.scene.shading)
         for (const char* const scheme : sampled_schemes) add({.scheme = scheme, .step = step});
-      for (const TableChoice& choice : table_choices(request_.scene))
-        add({.scheme = std::string(choice.scheme), .step = step}, true);
     }
     if (!request_.scene.shading) add({.scheme = "cell_cubic"});
   }
 
-  void add_ways_with_tables() {
+  /// Tables at the longest steps at which exact slabs keep the error, or nearly; each size is looked at before a larger
+  /// one is made.
+  void look_at_tables(const std::vector<PixelRay>& rays, const std::vector<PixelLight>& truth) {
     for (const TableChoice& choice : table_choices(request_.scene)) {
-      std::size_t tried = 0;
-      // Copied: adding candidates moves them.
-      std::vector<Way> guides;
-      for (const Candidate& candidate : candidates_)
-        if (candidate.is_guide && candidate.way.scheme == choice.scheme && candidate.way.refusal.empty() &&
-            candidate.way.error.low <= request_.error)
-          guides.push_back(candidate.way);
-      for (const Way& guide : guides) {
-        if (tried++ == steps_with_tables) break;
-        for (const std::size_t size : choice.sizes)
-          for (const char* const format : table_format_words) {
-            SceneTable table{
-                .builder = std::string(choice.builder), .size = size, .format = *find_named(table_formats, format)};
-            Way way{.scheme = guide.scheme, .step = guide.step, .table = table};
-            way.table_bytes = 4 * table.format.bytes;
-            for (std::size_t axis = 0; axis < choice.axes; ++axis) way.table_bytes *= size;
-            add(std::move(way));
-          }
+      std::size_t found = 0;
+      Candidate exact;
+      for (const double step : steps) {
+        exact = {.way = {.scheme = std::string(choice.scheme), .step = step}};
+        look_at(exact, rays, truth);
+        if (!exact.way.refusal.empty() || exact.way.error.value > nearly * request_.error) continue;
+        look_at_tables_of(exact.way, choice, rays, truth);
+        // Those that only nearly keep it may fail with every table.
+        if (exact.way.error.value <= request_.error && ++found == steps_with_tables) break;
       }
+      // Where none does, tables at the shortest step come closest.
+      if (found == 0 && exact.way.refusal.empty()) look_at_tables_of(exact.way, choice, rays, truth);
+    }
+  }
+
+  /// Tables for the slabs of a way with exact ones.
+  void look_at_tables_of(Way exact, const TableChoice& choice, const std::vector<PixelRay>& rays,
+                         const std::vector<PixelLight>& truth) {
+    count_reads(exact, true, request_.scene, rays);
+    for (const std::size_t size : choice.sizes) {
+      double least = std::numeric_limits<double>::infinity();
+      for (const char* const format : table_format_words) {
+        SceneTable table{
+            .builder = std::string(choice.builder), .size = size, .format = *find_named(table_formats, format)};
+        Way way = exact;
+        way.table = table;
+        way.table_bytes = 4 * table.format.bytes;
+        for (std::size_t axis = 0; axis < choice.axes; ++axis) way.table_bytes *= size;
+        add(std::move(way));
+        look_at(candidates_.back(), rays, truth);
+        least = std::min(least, candidates_.back().way.error.value);
+      }
+      if (least <= as_good_as_exact * exact.error.value) return;
     }
   }
 
@@ -236,16 +269,13 @@ class Search {
       throw InputError("no pixel of the views sees the volume; a scene without a camera gets views that do");
     advice_.rays += static_cast<std::int64_t>(rays.size());
     for (const PixelLight& light : truth) advice_.truth_radius = std::max(advice_.truth_radius, light.radius);
-    std::size_t begin = 0;
-    while (begin < candidates_.size()) {
-      const std::size_t end = candidates_.size();
-      for (std::size_t i = begin; i < end; ++i) {
-        if (is_first || is_followed(candidates_[i])) look_at(candidates_[i], rays, truth, is_first);
-        if (progress_) progress_(i + 1, end);
-      }
-      if (is_first && begin == 0) add_ways_with_tables();
-      begin = end;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      Candidate& candidate = candidates_[i];
+      if (is_first) count_reads(candidate.way, false, request_.scene, rays);
+      if (is_first || is_followed(candidate)) look_at(candidate, rays, truth);
+      if (progress_) progress_(i + 1, candidates_.size());
     }
+    if (is_first) look_at_tables(rays, truth);
     choose();
   }
 
@@ -254,11 +284,9 @@ class Search {
     return inside.begin < inside.end;
   }
 
-  void look_at(Candidate& candidate, const std::vector<PixelRay>& rays, const std::vector<PixelLight>& truth,
-               bool is_first) {
+  void look_at(Candidate& candidate, const std::vector<PixelRay>& rays, const std::vector<PixelLight>& truth) {
     Way& way = candidate.way;
     try {
-      if (is_first) count_reads(way, request_.scene, rays);
       const auto light = look_(way, rays);
       for (std::size_t i = 0; i < rays.size(); ++i)
         candidate.errors.push_back(error_of(request_.kind, light[i].light, truth[i].light));
@@ -267,7 +295,8 @@ class Search {
       return;
     }
     way.rays = static_cast<std::int64_t>(candidate.errors.size());
-    way.error = request_.kind == ErrorKind::rmse
+    way.error = has_all_ ? error_of_all(request_.kind, candidate.errors)
+                : request_.kind == ErrorKind::rmse
                     ? rmse_of_sample(candidate.errors, request_.confidence)
                     : largest_of_sample(candidate.errors, static_cast<double>(advice_.pixels));
     way.standing = way.error.high <= request_.error ? Standing::keeps
@@ -278,14 +307,14 @@ class Search {
   void choose() {
     best_ = nullptr;
     for (const Candidate& candidate : candidates_)
-      if (!candidate.is_guide && candidate.way.refusal.empty() && candidate.way.standing == Standing::keeps &&
+      if (candidate.way.refusal.empty() && candidate.way.standing == Standing::keeps &&
           (best_ == nullptr || is_cheaper(candidate.way, best_->way)))
         best_ = &candidate;
   }
 
   /// Whether more rays of it may change the advice. The best is followed too: it might not keep the error after all.
   [[nodiscard]] bool is_followed(const Candidate& candidate) const {
-    if (candidate.is_guide || !candidate.way.refusal.empty()) return false;
+    if (!candidate.way.refusal.empty()) return false;
     if (&candidate == best_) return true;
     return candidate.way.standing == Standing::undecided && (best_ == nullptr || is_cheaper(candidate.way, best_->way));
   }
@@ -298,7 +327,6 @@ class Search {
   Advice conclude() {
     advice_.is_settled = !is_open();
     for (Candidate& candidate : candidates_) {
-      if (candidate.is_guide) continue;
       if (candidate.way.standing == Standing::undecided && best_ != nullptr && is_cheaper(best_->way, candidate.way))
         candidate.way.standing = Standing::not_needed;
       advice_.ways.push_back(candidate.way);
@@ -321,6 +349,7 @@ class Search {
   const std::function<void(std::size_t, std::size_t)>& progress_;
   Looker look_;
   std::vector<Candidate> candidates_;
+  bool has_all_ = false;  ///< every pixel is looked at
   const Candidate* best_ = nullptr;
   Advice advice_;
 };

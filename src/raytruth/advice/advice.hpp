@@ -17,7 +17,7 @@ namespace raytruth {
 /// some cameras, and the error that its images may have.
 struct AdviceRequest {
   Scene scene;
-  std::vector<Camera> views;  ///< at least one
+  std::vector<Camera> views = {};  ///< at least one
   ErrorKind kind = ErrorKind::rmse;
   double error = 0;          ///< > 0
   double confidence = 0.95;  ///< that a way which is said to keep the error does, as far as ErrorEstimate can tell
@@ -69,9 +69,11 @@ struct Advice {
 /// spacings down to 1/16: the sampled ones, and slabs between samples from tables of 32 to 1024 entries a side in 8
 /// bits, binary16 and binary32; and the exact cubics of cells. Lit scenes have lit slabs.
 ///
-/// Every pixel of the views is as likely to be looked at as every other: an image is divided into equal parts, in each
-/// of which chance takes one pixel, in rounds that double the rays until every way cheaper than the best is decided, or
-/// `most_rays` are spent. Errors are those of the same rays against the reference. Equal requests give equal advice.
+/// All pixels of the views are looked at where they are few (4096). Otherwise each is as likely to be as every other:
+/// an image is divided into equal parts, in each of which chance takes one pixel, in rounds that double the rays until
+/// every way cheaper than the best is decided, or `most_rays` are spent. Tables are tried at the longest steps at which
+/// exact slabs keep the error, from the smallest up to that which is no worse than exact slabs. Errors are those of the
+/// same rays against the reference. Equal requests give equal advice.
 ///
 /// `progress(done, of)` is told after each way. Throws InputError where no pixel sees the volume.
 Advice advise(const AdviceRequest& request, const std::function<void(std::size_t, std::size_t)>& progress = {});

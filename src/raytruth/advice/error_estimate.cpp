@@ -35,14 +35,24 @@ Tail tail_of(const std::vector<double>& descending, std::size_t k) {
 
 ErrorEstimate rmse_of_sample(const std::vector<double>& squares, double confidence) {
   const auto n = static_cast<double>(squares.size());
-  if (squares.size() < 2) return {};
+  if (squares.size() < 2) return error_of_all(ErrorKind::rmse, squares);
   const double mean = std::accumulate(squares.begin(), squares.end(), 0.0) / n;
   double variance = 0;
   for (const double square : squares) variance += (square - mean) * (square - mean) / (n - 1);
   const double largest = *std::max_element(squares.begin(), squares.end());
   const double log = std::log(2 / (1 - confidence));
   const double spread = std::sqrt(2 * variance * log / n) + 7 * 2 * largest * log / (3 * (n - 1));
-  return {std::sqrt(mean), std::sqrt(std::max(0.0, mean - spread)), std::sqrt(mean + spread)};
+  const double standard_error = std::sqrt(variance / n);
+  return {std::sqrt(mean), std::sqrt(std::max(0.0, mean - 2 * standard_error)), std::sqrt(mean + spread)};
+}
+
+ErrorEstimate error_of_all(ErrorKind kind, const std::vector<double>& errors) {
+  if (errors.empty()) return {};
+  const double error =
+      kind == ErrorKind::rmse
+          ? std::sqrt(std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size()))
+          : *std::max_element(errors.begin(), errors.end());
+  return {error, error, error};
 }
 
 ErrorEstimate largest_of_sample(std::vector<double> errors, double population) {

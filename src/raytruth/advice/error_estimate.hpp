@@ -21,12 +21,14 @@ struct ErrorEstimate {
   double high = 0;
 };
 
-/// The root of the mean of squares. `squares` are those of the pixels' errors. The mean of all is bounded by the
-/// empirical Bernstein inequality (A. Maurer, M. Pontil, Empirical Bernstein Bounds and Sample-Variance Penalization,
-/// COLT 2009, theorem 4),
+/// The error of an image all of whose pixels' errors, or their squares for `rmse`, are known.
+ErrorEstimate error_of_all(ErrorKind kind, const std::vector<double>& errors);
+
+/// The root of the mean of squares, those of the pixels' errors. `high` is the empirical Bernstein bound (A. Maurer, M.
+/// Pontil, Empirical Bernstein Bounds and Sample-Variance Penalization, COLT 2009, theorem 4),
 ///     mean + sqrt(2 V ln(2 / d) / n) + 7 R ln(2 / d) / (3 (n - 1)),
 /// V the sample's variance and d = 1 - confidence. It asks for the range R of a square, which nobody knows: twice the
-/// largest one that was seen is taken, so the bound is no proof.
+/// largest one that was seen is taken, so the bound is no proof. `low` is two standard errors below the mean.
 ErrorEstimate rmse_of_sample(const std::vector<double>& squares, double confidence);
 
 /// The largest of `population` errors of which the sample has some, by the tail of the sample's largest twentieth (A.
