@@ -7,7 +7,7 @@ packages_to_build=(g++ cmake ninja-build ccache git libboost-dev libcli11-dev li
   libflint-arb-dev libfmt-dev libnifti-dev libosmesa6-dev libpng-dev libpugixml-dev librandom123-dev libssl-dev
   libtbb-dev libteem-dev nlohmann-json3-dev zlib1g-dev)
 packages_to_experiment=(python3-matplotlib mricron-data)
-packages_to_test=(libbenchmark-dev libgl1-mesa-dri libgsl-dev libgtest-dev python3-jsonschema python3-skimage)
+packages_to_test=(libbenchmark-dev libgl1-mesa-dri libgsl-dev libgtest-dev glslang-tools python3-jsonschema python3-skimage)
 packages_to_tidy=(clang-tidy-16)
 # Engines that start shards, by experiments/launch. Nothing here installs them: tests of those that are absent are skipped.
 packages_to_launch=(munge openmpi-bin parallel slurm-wlm)

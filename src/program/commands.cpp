@@ -14,6 +14,7 @@ extern const Command list_command;
 extern const Command merge_command;
 extern const Command plot_command;
 extern const Command render_command;
+extern const Command rules_command;
 extern const Command run_command;
 extern const Command score_command;
 extern const Command table_command;
@@ -22,9 +23,9 @@ extern const Command vectors_command;
 
 std::span<const Command* const> commands() {
   static constexpr std::array list{
-      &run_command,      &merge_command,   &list_command,  &eval_command,  &render_command,
-      &compare_command,  &table_command,   &plot_command,  &diff_command,  &info_command,
-      &transfer_command, &vectors_command, &score_command, &judge_command, &ledger_command,
+      &run_command,     &merge_command, &list_command,  &eval_command,   &render_command, &compare_command,
+      &table_command,   &rules_command, &plot_command,  &diff_command,   &info_command,   &transfer_command,
+      &vectors_command, &score_command, &judge_command, &ledger_command,
   };
   return list;
 }
