@@ -2,7 +2,11 @@
 
 import json
 import os
+import pathlib
+import re
+import signal
 import subprocess
+import time
 import unittest
 
 from support import EXPERIMENT, PROGRAM, RAY, SOURCE, ProgramTest, changed
@@ -13,7 +17,13 @@ HEADER = b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 3 4\nencoding: raw\nspa
 
 class Help(ProgramTest):
     def test_version(self):
-        self.assertRegex(self.output_of("--version"), r"^raytruth \d+\.\d+\.\d+ \(.+\)\n$")
+        first, *features = self.output_of("--version").splitlines()
+        self.assertRegex(first, r"^raytruth \d+\.\d+\.\d+ \(.+\)$")
+        patterns = (r"OpenGL: (none|osmesa|egl|osmesa, egl)", r"Python module: (yes|no)",
+                    r"x86-64 levels: (x86-64-v4, x86-64-v3, )?baseline; in use: (baseline|x86-64-v3|x86-64-v4)")
+        self.assertEqual(len(features), len(patterns))
+        for line, pattern in zip(features, patterns):
+            self.assertRegex(line, f"^{pattern}$")
 
     def test_every_command_has_help_with_an_example(self):
         overview = self.output_of("--help")

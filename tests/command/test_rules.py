@@ -62,6 +62,13 @@ try {
 COUNTS = {"real": 1, "bool": 1, "vec4": 4}
 
 
+def example_of_readme(language):
+    """What README.md puts behind the rules, by its shape: the text in backquotes of three.js and of WebGPU."""
+    texts = re.findall(r"rules \+ `(.*?)`", (RULES / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+    (found,) = [text for text in texts if ("@compute" in text) == (language == "wgsl")]
+    return found
+
+
 def twin_entry(twin):
     """A compute shader that calls the twin's function for each row of numbers."""
     arguments, place = [], 0
@@ -164,6 +171,9 @@ class Rules(ProgramTest):
                 file = self.write("rules.frag", f"#version {version}\n{self.rules(language)}{FRAGMENT}")
                 done = subprocess.run(["glslangValidator", file], cwd=self.folder, capture_output=True, text=True)
                 self.assertEqual(done.returncode, 0, f"{version}: {done.stdout}")
+        file = self.write("rules.frag", f"#version 300 es\n{self.rules('essl')}{example_of_readme('essl')}")
+        done = subprocess.run(["glslangValidator", file], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stdout)
 
     def test_dawn_takes_them(self):
         """Dawn without a driver: npm's package `webgpu`, found by NODE_PATH."""
@@ -180,7 +190,7 @@ class Rules(ProgramTest):
               console.log(`${lineNum}: ${message}`);
             process.exit();"""
         command = ["node", "-e", f"(async () => {{{script}}})()", pathlib.Path(found).as_uri()]
-        good = self.rules("wgsl")
+        good = self.rules("wgsl") + example_of_readme("wgsl")
         self.assertEqual(subprocess.run(command, input=good, capture_output=True, text=True).stdout, "")
         bad = good.replace("select(", "choose(", 1)
         self.assertIn("choose", subprocess.run(command, input=bad, capture_output=True, text=True).stdout)
