@@ -2,6 +2,7 @@
 #include "experiments/version.hpp"
 #include "program/command.hpp"
 #include "program/features.hpp"
+#include "program/interruption.hpp"
 #include "raytruth/core/error.hpp"
 #include "raytruth/core/memory_limit.hpp"
 #include "raytruth/core/one_line.hpp"
@@ -93,6 +94,7 @@ int run_program(int argc, char** argv) {
   try {
     // A reader that stops early, as `head` does, shows as an error of writing.
     std::signal(SIGPIPE, SIG_IGN);
+    const InterruptionNotice told_at_ctrl_c("\nraytruth: interrupted; what was not finished is not written\n");
     return CommandLine().run(argc, argv);
   } catch (const InputError& error) {
     say(error.what());

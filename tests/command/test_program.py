@@ -31,6 +31,19 @@ class Help(ProgramTest):
             self.assertIn(command, overview)
             self.assertIn(f"Example:\n  raytruth {command}", self.output_of(command, "--help"))
 
+    def test_an_interruption_is_told(self):
+        """Commands that wait for what never comes; `run` has more to say, see test_run.py."""
+        for command in (["eval", "-"], ["render", "-", "-o", "image.png"], ["table", "-", "-o", "table.npy"]):
+            started = subprocess.Popen([PROGRAM, *command], cwd=self.folder, stdin=subprocess.PIPE, stderr=subprocess.PIPE)
+            caught = re.compile(r"^SigCgt:\s*[0-9a-f]*[2367abef]$", re.MULTILINE)  # the second signal
+            while not caught.search(pathlib.Path(f"/proc/{started.pid}/status").read_text()):
+                time.sleep(0.01)
+            started.send_signal(signal.SIGINT)
+            self.assertEqual(started.wait(30), -signal.SIGINT)
+            self.assertEqual(started.stderr.read(), b"\nraytruth: interrupted; what was not finished is not written\n")
+            started.stdin.close()
+            started.stderr.close()
+
     def test_misspelt(self):
         self.assert_refused(self.run_program("evla", "case.json"), "evla", "(perhaps eval)")
         self.assert_refused(self.run_program("list", "schemas"), "schemes")
