@@ -7,7 +7,7 @@ packages_to_build=(g++ cmake ninja-build ccache git libboost-dev libcli11-dev li
   libflint-arb-dev libfmt-dev libnifti-dev libosmesa6-dev libpng-dev libpugixml-dev librandom123-dev libssl-dev
   libtbb-dev libteem-dev nlohmann-json3-dev zlib1g-dev)
 packages_to_experiment=(python3-matplotlib mricron-data)
-packages_to_test=(libbenchmark-dev libgl1-mesa-dri libgsl-dev libgtest-dev python3-jsonschema python3-skimage)
+packages_to_test=(libbenchmark-dev libgl1-mesa-dri libgsl-dev libgtest-dev glslang-tools python3-jsonschema python3-skimage)
 # The Python module: where they are missing it is left out, with a message.
 packages_of_python=(libpython3-dev pybind11-dev python3-numpy)
 packages_to_tidy=(clang-tidy-16)

@@ -11,8 +11,11 @@ if(NOT failed AND prefix STREQUAL "")
   execute_process(COMMAND ${git} describe --always --dirty --exclude=* --abbrev=40 OUTPUT_VARIABLE COMMIT ERROR_QUIET
                   OUTPUT_STRIP_TRAILING_WHITESPACE)
 endif()
+set(COMMIT_DATE "")
 if(COMMIT STREQUAL "")
   set(COMMIT unknown)
+else()
+  execute_process(COMMAND ${git} log -1 --format=%cs OUTPUT_VARIABLE COMMIT_DATE ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
 endif()
 
 string(REGEX REPLACE " +" " " FLAGS "${FLAGS}")
@@ -27,6 +30,7 @@ namespace raytruth {
 
 const char* const version = R"(@VERSION@)";
 const char* const commit = R"(@COMMIT@)";
+const char* const commit_date = R"(@COMMIT_DATE@)";
 const char* const compiler = R"(@COMPILER@)";
 const char* const flags = R"(@FLAGS@)";
 

@@ -2,6 +2,7 @@
 
 #include "raytruth/documents/volume_source.hpp"
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -76,6 +77,9 @@ class CommandOptions {
   void seed(std::int64_t& value, const std::string& summary);
   void seed(std::optional<std::int64_t>& value, const std::string& summary);
 
+  /// The whole program, with all commands once all have been described.
+  [[nodiscard]] const CLI::App& program() const;
+
  private:
   CLI::App& parser_;
 };
@@ -90,6 +94,10 @@ struct Command {
   /// Describes its options, and returns what does the work once they are read: the exit code.
   std::function<int()> (*describe)(CommandOptions&);
 };
+
+/// What the program's exit codes mean, each with its number.
+inline constexpr std::array exit_codes{"0 done", "1 a bound does not hold (--check)", "2 bad input",
+                                       "3 something is missing here", "4 the answer could not be written"};
 
 /// All of them, in the order of --help; commands.cpp names them.
 std::span<const Command* const> commands();

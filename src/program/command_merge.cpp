@@ -66,8 +66,9 @@ int merge(const MergeOptions& options) {
   BarObserver observer;
   const Merged merged = merge_parts(request, observer);
   for (const std::string& warning : merged.experiment->warnings) say(warning);
-  write_whole(result_file(options, merged), result_text(merged.result));
-  const bool all_hold = report(*merged.experiment, merged.profile, merged.result);
+  const std::filesystem::path file = result_file(options, merged);
+  write_whole(file, result_text(merged.result));
+  const bool all_hold = report(*merged.experiment, merged.profile, merged.result, file);
   return options.check && !all_hold ? 1 : 0;
 }
 

@@ -4,6 +4,7 @@
 #include "experiments/runner.hpp"
 #include "experiments/shard.hpp"
 #include "program/command.hpp"
+#include "program/interruption.hpp"
 #include "program/run_report.hpp"
 #include "raytruth/core/memory_limit.hpp"
 #include "raytruth/core/one_line.hpp"
@@ -11,12 +12,8 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <array>
-#include <csignal>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,35 +49,6 @@ void refuse_overwriting(const std::string& experiment, const std::filesystem::pa
     throw InputError(
         fmt::format("{}: found the experiment where its result would go; another folder is allowed", result.string()));
 }
-
-/// While it lives, Ctrl-C ends the program with a line that names the command which goes on.
-class InterruptionNotice {
- public:
-  explicit InterruptionNotice(const std::string& line) {
-    // What a handler of signals may read: all of it stands before the handler does.
-    const std::size_t size = std::min(line.size(), text_.size());
-    std::copy_n(line.begin(), size, text_.begin());
-    size_ = static_cast<std::sig_atomic_t>(size);
-    previous_ = std::signal(SIGINT, &tell);
-  }
-  ~InterruptionNotice() { std::signal(SIGINT, previous_); }
-  InterruptionNotice(const InterruptionNotice&) = delete;
-  InterruptionNotice& operator=(const InterruptionNotice&) = delete;
-  InterruptionNotice(InterruptionNotice&&) = delete;
-  InterruptionNotice& operator=(InterruptionNotice&&) = delete;
-
- private:
-  /// Only calls that POSIX allows in a handler; who started the program learns that the signal ended it.
-  static void tell(int signal) {
-    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text_.data(), static_cast<std::size_t>(size_));
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);
-  }
-
-  static inline std::array<char, 4096> text_{};
-  static inline volatile std::sig_atomic_t size_ = 0;
-  void (*previous_)(int) = nullptr;
-};
 
 /// What Ctrl-C says.
 std::string notice(const RunOptions& options) {
@@ -169,7 +137,7 @@ int run_experiments(const RunOptions& options) {
     const auto file = result_file(options, experiment);
     const auto result = run(experiment, file);
     if (file.empty()) print(result_text(result));
-    all_hold = report(experiment, options.profile, result) && all_hold;
+    all_hold = report(experiment, options.profile, result, file) && all_hold;
   }
   return options.check && !all_hold ? 1 : 0;
 }

@@ -1,6 +1,8 @@
 #include "experiments/output.hpp"
 #include "experiments/version.hpp"
 #include "program/command.hpp"
+#include "program/features.hpp"
+#include "program/interruption.hpp"
 #include "raytruth/core/error.hpp"
 #include "raytruth/core/memory_limit.hpp"
 #include "raytruth/core/one_line.hpp"
@@ -35,11 +37,8 @@ class CommandLine {
  public:
   CommandLine() {
     program_.require_subcommand(1);
-    program_.set_version_flag("--version", fmt::format("raytruth {} ({})", version, commit));
-    program_.footer(
-        "Exit codes: 0 done; 1 a bound does not hold (--check); 2 bad input; 3 something is missing here;\n4 the "
-        "answer "
-        "could not be written.");
+    program_.set_version_flag("--version", fmt::format("raytruth {} ({})\n{}", version, commit, features()));
+    program_.footer(fmt::format("Exit codes: {}.", fmt::join(exit_codes, "; ")));
     for (const Command* command : commands()) add(*command);
   }
 
@@ -95,6 +94,7 @@ int run_program(int argc, char** argv) {
   try {
     // A reader that stops early, as `head` does, shows as an error of writing.
     std::signal(SIGPIPE, SIG_IGN);
+    const InterruptionNotice told_at_ctrl_c("\nraytruth: interrupted; what was not finished is not written\n");
     return CommandLine().run(argc, argv);
   } catch (const InputError& error) {
     say(error.what());
@@ -115,6 +115,8 @@ int run_program(int argc, char** argv) {
 }
 
 }  // namespace
+
+const CLI::App& CommandOptions::program() const { return *parser_.get_parent(); }
 
 void CommandOptions::operand(const std::string& name, std::string& value, const std::string& summary) {
   parser_.add_option(name, value, summary)->required();

@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,7 +25,9 @@ class BarObserver final : public RunObserver {
   std::optional<ProgressBar> bar_;
 };
 
-/// Tells what the publications state beside what was measured, and whether the bounds hold; false where one does not.
-bool report(const Experiment& experiment, const std::string& profile, const nlohmann::ordered_json& result);
+/// Tells what the publications state beside what was measured, whether the bounds hold, and what was made; false where
+/// a bound does not. `file` is where the result is; empty: on standard output.
+bool report(const Experiment& experiment, const std::string& profile, const nlohmann::ordered_json& result,
+            const std::filesystem::path& file);
 
 }  // namespace raytruth

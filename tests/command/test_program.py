@@ -2,7 +2,11 @@
 
 import json
 import os
+import pathlib
+import re
+import signal
 import subprocess
+import time
 import unittest
 
 from support import EXPERIMENT, PROGRAM, RAY, SOURCE, ProgramTest, changed
@@ -13,13 +17,32 @@ HEADER = b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 3 4\nencoding: raw\nspa
 
 class Help(ProgramTest):
     def test_version(self):
-        self.assertRegex(self.output_of("--version"), r"^raytruth \d+\.\d+\.\d+ \(.+\)\n$")
+        first, *features = self.output_of("--version").splitlines()
+        self.assertRegex(first, r"^raytruth \d+\.\d+\.\d+ \(.+\)$")
+        patterns = (r"OpenGL: (none|osmesa|egl|osmesa, egl)", r"Python module: (yes|no)",
+                    r"x86-64 levels: (x86-64-v4, x86-64-v3, )?baseline; in use: (baseline|x86-64-v3|x86-64-v4)")
+        self.assertEqual(len(features), len(patterns))
+        for line, pattern in zip(features, patterns):
+            self.assertRegex(line, f"^{pattern}$")
 
     def test_every_command_has_help_with_an_example(self):
         overview = self.output_of("--help")
         for command in COMMANDS:
             self.assertIn(command, overview)
             self.assertIn(f"Example:\n  raytruth {command}", self.output_of(command, "--help"))
+
+    def test_an_interruption_is_told(self):
+        """Commands that wait for what never comes; `run` has more to say, see test_run.py."""
+        for command in (["eval", "-"], ["render", "-", "-o", "image.png"], ["table", "-", "-o", "table.npy"]):
+            started = subprocess.Popen([PROGRAM, *command], cwd=self.folder, stdin=subprocess.PIPE, stderr=subprocess.PIPE)
+            caught = re.compile(r"^SigCgt:\s*[0-9a-f]*[2367abef]$", re.MULTILINE)  # the second signal
+            while not caught.search(pathlib.Path(f"/proc/{started.pid}/status").read_text()):
+                time.sleep(0.01)
+            started.send_signal(signal.SIGINT)
+            self.assertEqual(started.wait(30), -signal.SIGINT)
+            self.assertEqual(started.stderr.read(), b"\nraytruth: interrupted; what was not finished is not written\n")
+            started.stdin.close()
+            started.stderr.close()
 
     def test_misspelt(self):
         self.assert_refused(self.run_program("evla", "case.json"), "evla", "(perhaps eval)")

@@ -88,20 +88,45 @@ class Results(ProgramTest):
         done = self.run_program("run", "small.json")
         table = done.stderr.decode().splitlines()
         self.assertEqual(table[0].split(), ["claim", "published", "measured", "verdict"])
-        self.assertEqual(len(table), 5)
+        self.assertEqual(len(table), 6)
+        self.assertRegex(table.pop(), r"^raytruth: small: \d+ rows$")
         self.assertEqual(table.pop(), "raytruth: small: 1 of 1 checks hold")
         self.assertTrue(table[1].startswith("figure") and table[1].endswith("reproduced"))
         self.assertEqual(len({line.index(word) for line, word in zip(table, ["verdict", "reproduced", "reproduced", "not"])}), 1)
 
     def test_quick_runs_say_that_they_have_no_verdicts(self):
         words = self.run_program("run", "small.json", "--profile", "quick").stderr.decode().splitlines()
-        self.assertEqual(len(words), 2)
+        self.assertEqual(len(words), 3)
         self.assertIn("no verdicts", words[0])
         self.assertIn("1 of 1 checks hold", words[1])
+        self.assertRegex(words[2], r"^raytruth: small: \d+ rows$")
 
     def test_says_where_nothing_is_claimed(self):
         self.write("small.json", changed(changed(EXPERIMENT, "/published", []), "/checks", []))
-        self.assertEqual(self.run_program("run", "small.json").stderr, b"raytruth: small: no publication claims anything of it\n")
+        done = self.run_program("run", "small.json")
+        rows = len(json.loads(done.stdout)["rows"])
+        self.assertEqual(done.stderr.decode(), f"raytruth: small: no publication claims anything of it\nraytruth: small: {rows} rows\n")
+
+    def test_says_what_was_made_and_what_draws_it(self):
+        self.write("small.json", EXPERIMENT)
+        done = self.run_program("run", "small.json", "-o", "out")
+        rows = len(json.loads((self.folder / "out/small.json").read_text())["rows"])
+        last = done.stderr.decode().splitlines()[-1]
+        self.assertEqual(last, f"raytruth: small: {rows} rows in out/small.json; to draw them: raytruth plot out/small.json -o out")
+        self.assertEqual(self.run_program(*last.split(" raytruth ")[1].split()).returncode, 0)
+        without = changed(EXPERIMENT, "/plot", ...)
+        self.write("small.json", without)
+        done = self.run_program("run", "small.json", "-o", "out")
+        self.assertTrue(done.stderr.decode().endswith(f" {rows} rows in out/small.json\n"))
+
+    def test_says_how_many_rows_have_no_values_and_why(self):
+        self.write("small.json", changed(EXPERIMENT, "/fields/2", VOLUME))
+        done = self.run_program("run", "small.json", "-o", "out")
+        rows = json.loads((self.folder / "out/small.json").read_text())["rows"]
+        refused = [row["why"] for row in rows if row["status"] != "ok"]
+        self.assertGreater(len(refused), 1)
+        self.assertEqual(len(set(refused)), 1)
+        self.assertIn(f"{len(rows)} rows, {len(refused)} without values ({refused[0]}) in", done.stderr.decode().splitlines()[-1])
 
     def test_other_rows_answer_where_a_volume_is_absent(self):
         document = changed(EXPERIMENT, "/fields/2", VOLUME)

@@ -22,3 +22,4 @@ run(${CMAKE_COMMAND}
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/consumer)
 run(${WORK}/build/documents_consumer)
+run(${WORK}/build/module_consumer)

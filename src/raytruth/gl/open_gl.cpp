@@ -1,8 +1,20 @@
 #include "raytruth/core/error.hpp"
 #include "raytruth/gl/device.hpp"
 #include "raytruth/gl/passes.hpp"
+#include "raytruth/gl/platforms.hpp"
 
 namespace raytruth {
+
+std::vector<std::string_view> compiled_gl_platforms() {
+  return {
+#ifdef RAYTRUTH_OSMESA
+      "osmesa",
+#endif
+#ifdef RAYTRUTH_EGL
+      "egl",
+#endif
+  };
+}
 
 std::unique_ptr<GlDevice> open_gl(GlPlatform platform) {
   switch (platform) {

@@ -2,6 +2,7 @@
 
 #include "raytruth/gl/device.hpp"
 #include "raytruth/gl/texts.hpp"
+#include "raytruth/rules/texts.hpp"
 #include "raytruth/rules/twins.hpp"
 #include "raytruth/schemes/sampled_march.hpp"
 #include "raytruth/transfer/emission.hpp"

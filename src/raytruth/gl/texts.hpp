@@ -4,8 +4,6 @@ namespace raytruth {
 
 /// Texts of shaders, which the build puts into the program as they are.
 
-extern const char* const rule_prelude;      ///< of src/raytruth/rules/prelude.glsl
-extern const char* const rule_texts;        ///< of the rules, in the order of src/raytruth/rules/rules.hpp
 extern const char* const sampled_march;     ///< of src/raytruth/gl/sampled_march.glsl
 extern const char* const texture_unit;      ///< of src/raytruth/textures/texture_unit.glsl
 extern const char* const texture_look_ups;  ///< of src/raytruth/gl/texture_look_ups.glsl

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "raytruth/gl/device.hpp"
-#include "raytruth/gl/texts.hpp"
+#include "raytruth/rules/texts.hpp"
 #include "raytruth/rules/twins.hpp"
 
 #include <cstddef>

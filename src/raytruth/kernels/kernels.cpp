@@ -1,5 +1,6 @@
 #include "raytruth/kernels/kernels.hpp"
 #include "raytruth/kernels/cell_kernels.hpp"
+#include "raytruth/kernels/levels.hpp"
 #include "raytruth/kernels/slab_kernels.hpp"
 #include "raytruth/kernels/table_kernels.hpp"
 
@@ -52,7 +53,19 @@ std::vector<const Found*> find_versions(const Found& baseline_version, [[maybe_u
 #define RAYTRUTH_VERSIONS(kernels) find_versions(baseline::kernels, {}, {})
 #endif
 
+constexpr std::array<std::string_view, 3> level_names{"baseline", "x86-64-v3", "x86-64-v4"};
+
 }  // namespace
+
+std::vector<std::string_view> compiled_levels() {
+#ifdef RAYTRUTH_LEVELS
+  return {level_names.rbegin(), level_names.rend()};
+#else
+  return {level_names.front()};
+#endif
+}
+
+std::string_view level_in_use() { return *find_versions(level_names[0], &level_names[1], &level_names[2]).front(); }
 
 template <>
 const std::vector<const Kernels<3>*>& kernel_versions<3>() {

@@ -1,9 +1,14 @@
-// What the rules need of GLSL 4.30: put this text in front of theirs. In C++ Rules<Real> (rules.hpp) says the same.
+// What the rules need of a shader language: this text stands in front of theirs. In C++ Rules<Real> (rules.hpp) says it.
 //
-// The functions of GLSL may be off by many units in the last place, the more so where 1 is subtracted or added; these
-// are not. Where values are below 2^-126 they may be taken for 0.
+// The functions of shader languages may be off by many units in the last place, the more so where 1 is subtracted or
+// added; these are not. Where values are below 2^-126 they may be taken for 0.
 
 #define real float
+#if defined(GL_ES) && __VERSION__ < 320 || !defined(GL_ES) && __VERSION__ < 400
+#define as_written
+#else
+#define as_written precise
+#endif
 
 // exp(x) - 1 = 2^k (exp(r) - 1) + 2^k - 1, x = k log(2) + r, |r| <= log(2) / 2, by Taylor's polynomial of degree 7.
 float expm1(float x) {
@@ -19,9 +24,9 @@ float expm1(float x) {
 // log(1 + x) = k log(2) + log(1 + f), 1 + f in [sqrt(1/2), sqrt(2)), and with s = f / (2 + f)
 //     log(1 + f) = 2 (s + s^3 / 3 + s^5 / 5 + ...) = f - f^2 / 2 + s (f^2 / 2 + 2 s^2 / 3 + 2 s^4 / 5 + ...).
 float log1p(float x) {
-  if (x <= -1.0) return uintBitsToFloat(0xff800000u);  // -infinity
+  if (x <= -1.0) return -3.0e38;  // for -infinity, which shaders need not have
   float sum = 1.0 + x;
-  precise float lost = x < 1.0 ? x - (sum - 1.0) : 1.0 - (sum - x);  // of 1 + x
+  as_written float lost = x < 1.0 ? x - (sum - 1.0) : 1.0 - (sum - x);  // of 1 + x
   uint bits = floatBitsToUint(sum);
   int k = int((bits + (0x3f800000u - 0x3f3504f3u)) >> 23) - 127;
   float f = k == 0 ? x : uintBitsToFloat(bits - (uint(k) << 23)) - 1.0;
