@@ -8,7 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-BUILD, WORK = Path(sys.argv[1]), Path(sys.argv[2])
+BUILD, WORK = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 ROOT = WORK / "root"
 ELSEWHERE = WORK / "elsewhere"
 
