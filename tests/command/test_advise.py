@@ -120,6 +120,9 @@ class AdviseTest(ProgramTest):
             ([], "--error"),
         ):
             self.assert_refused(self.run_program("advise", "scene.json", *options), words)
+        surfaces = {**SCENE, "transfer_function": {"points": POINTS, "isosurfaces": [{"s": 0.5, "opacity": 0.5, "color": [1, 1, 1]}]}}
+        self.write("surfaces.json", json.dumps(surfaces))
+        self.assert_refused(self.run_program("advise", "surfaces.json", "--error", "0.1"), "isosurfaces")
         self.write("away.json", json.dumps({**SCENE, "camera": {**SCENE["camera"], "target": [500, -300, 30]}}))
         done = self.run_program("advise", "away.json", "--error", "0.1")
         self.assertEqual(done.returncode, 2)
