@@ -79,6 +79,10 @@ class AdviseTest(ProgramTest):
         result = self.advise("--error", "0.05", scene=lit)
         self.assertFalse(result["advice"]["truth"]["certified"])
         self.assertEqual(result["advice"]["best"]["scheme"], "order1")
+        large = {**lit, "camera": {**lit["camera"], "size": [80, 80]}}
+        sampled = self.advise("--error", "0.05", scene=large)["advice"]
+        self.assertLess(sampled["rays"], sampled["pixels"])
+        self.assertEqual(sampled["best"]["scheme"], "order1")
 
     def test_nothing_may_keep_an_error(self):
         result = self.advise("--error", "1e-18", code=1)

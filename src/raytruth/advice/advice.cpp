@@ -204,7 +204,7 @@ class Search {
       return conclude();
     }
     std::int64_t count = first_rays;
-    for (std::uint32_t round = 0; !candidates_.empty(); ++round) {
+    for (std::uint32_t round = 0;; ++round) {
       look_at(rays_of_round(request_, count, round), round == 0);
       if (advice_.rays >= request_.most_rays || !is_open()) break;
       count = std::min(advice_.rays, request_.most_rays - advice_.rays);
