@@ -83,6 +83,8 @@ class AdviseTest(ProgramTest):
         sampled = self.advise("--error", "0.05", scene=large)["advice"]
         self.assertLess(sampled["rays"], sampled["pixels"])
         self.assertEqual(sampled["best"]["scheme"], "order1")
+        dear = self.advise("--error", "0.015", scene=lit)["advice"]
+        self.assertLess(dear["next_cheaper"]["reads"], dear["best"]["reads"])
 
     def test_nothing_may_keep_an_error(self):
         result = self.advise("--error", "1e-18", code=1)

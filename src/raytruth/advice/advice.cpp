@@ -16,6 +16,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -237,10 +238,16 @@ class Search {
     for (const TableChoice& choice : table_choices(request_.scene)) {
       std::size_t found = 0;
       Candidate exact;
+      std::optional<Way> longer;  // the step before, which exceeds the error: what the next cheaper way would cost
       for (const double step : steps) {
         exact = {.way = {.scheme = std::string(choice.scheme), .step = step}};
         look_at(exact, some_rays, some_truth);
-        if (!exact.way.refusal.empty() || exact.way.error.value > nearly * request_.error) continue;
+        if (!exact.way.refusal.empty()) continue;
+        if (exact.way.error.value > nearly * request_.error) {
+          longer = exact.way;
+          continue;
+        }
+        if (longer) look_at_tables_of(*std::exchange(longer, {}), choice, rays, truth);
         look_at_tables_of(exact.way, choice, rays, truth);
         // Those that only nearly keep it may fail with every table.
         if (exact.way.error.value <= request_.error && ++found == steps_with_tables) break;
@@ -308,7 +315,7 @@ class Search {
     way.error = has_all_ ? error_of_all(request_.kind, candidate.errors)
                 : request_.kind == ErrorKind::rmse
                     ? rmse_of_sample(candidate.errors, request_.confidence)
-                    : largest_of_sample(candidate.errors, static_cast<double>(advice_.pixels));
+                    : largest_of_sample(candidate.errors, static_cast<double>(advice_.pixels), request_.confidence);
     way.standing = way.error.high <= request_.error ? Standing::keeps
                    : way.error.low > request_.error ? Standing::exceeds
                                                     : Standing::undecided;
