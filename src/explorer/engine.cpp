@@ -82,12 +82,16 @@ Ray ray_of(const double* numbers) {
           .length = numbers[6]};
 }
 
-void trace(const Grid& grid, const Ray& ray) {
+std::string length_json(double length) { return fmt::format(R"({{"length":{}}})", length); }
+
+std::string trace(const Grid& grid, const Ray& ray) {
   Signal<3> signal;
   trace_trilinear(grid, ray, signal.chain);
   signal.error = trilinear_error(grid, ray, signal.chain);
   signal.precise = trace_trilinear_precisely(grid, ray);
+  const double length = signal.chain.length();
   choice().signal = std::move(signal);
+  return length_json(length);
 }
 
 template <int Degree>
@@ -217,16 +221,14 @@ const char* explorer_trilinear(const int* size, const double* voxels, const doub
     grid.values.assign(voxels, voxels + count);
     for (const double value : grid.values)
       if (!std::isfinite(value)) throw InputError("a voxel is not a finite number");
-    trace(grid, ray_of(ray));
-    return "{}";
+    return trace(grid, ray_of(ray));
   });
 }
 
 const char* explorer_marschner_lobb(int samples, const double* ray) {
   return answered([&]() -> std::string {
     if (samples < 2 || samples > 100) throw InputError("2 to 100 nodes on each axis are allowed");
-    trace(sampled_marschner_lobb(samples), ray_of(ray));
-    return "{}";
+    return trace(sampled_marschner_lobb(samples), ray_of(ray));
   });
 }
 
@@ -243,7 +245,7 @@ const char* explorer_polynomials(int pieces, const double* breaks, int count, co
     signal.error = piecewise_polynomial_error(places, powers, signal.chain);
     signal.precise = precise_piecewise_polynomial(places, powers);
     choice().signal = std::move(signal);
-    return "{}";
+    return length_json(places.back());
   });
 }
 

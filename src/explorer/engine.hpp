@@ -10,7 +10,7 @@ extern "C" {
 const char* explorer_schemes();
 
 /// The signal becomes that of a ray through `size[0]` x `size[1]` x `size[2]` voxels, x fastest, that are interpolated
-/// trilinearly. `ray`: origin and direction in voxels, and the length.
+/// trilinearly. `ray`: origin and direction in voxels, and the length. Gives {"length"}, of what of it is inside.
 const char* explorer_trilinear(const int* size, const double* voxels, const double* ray);
 
 /// The same through the Marschner-Lobb signal sampled at `samples`^3 nodes.

@@ -37,8 +37,8 @@ def slab_case(angle, highlight):
         },
         "transfer_function": {
             "points": [
-                {"s": 0, "extinction": 0.2, "color": [0.15, 0.45, 0.9]},
-                {"s": 1, "extinction": 2, "color": [0.95, 0.6, 0.2]},
+                {"s": 0, "extinction": 0.2, "color": [0.85, 0.2, 0.1]},
+                {"s": 1, "extinction": 2, "color": [0.95, 0.55, 0.15]},
             ]
         },
         "emission": "associated",

@@ -8,6 +8,7 @@ const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 
 // The palette of the project's plots, which colour-blind readers tell apart.
 const COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00"];
+const DASHES = ["none", "8 3", "2 3", "8 3 2 3", "5 5", "12 2"];
 const MAIN_SCHEMES = ["riemann_left", "riemann_mid", "trapezoid", "simpson", "order0_mid", "order1", "order2", "order3", "virtual_catmull_rom",
   "virtual_catmull_rom_3", "order1_no_attenuation", "order1_iterations_16", "quadratic_gray", "cell_adaptive", "cell_cubic"];
 
@@ -176,19 +177,30 @@ function ask(name, ...values) {
   return result;
 }
 
+let given = { text: "", length: 0 }; // the signal that the engine has
+
+/** Gives the engine the signal, if it is another one, and returns the ray's length. */
 function give_signal() {
   const signal = SIGNALS[state.signal]();
+  const text = JSON.stringify(signal);
+  if (given.text !== text) {
+    given.text = "";
+    given = { text, length: length_of_given(signal) };
+  }
+  return given.length;
+}
+
+function length_of_given(signal) {
   if (signal.kind === "piecewise_polynomial")
-    return ask("polynomials", signal.coefficients.length, signal.breaks, signal.coefficients[0].length, signal.coefficients.flat());
+    return ask("polynomials", signal.coefficients.length, signal.breaks, signal.coefficients[0].length, signal.coefficients.flat()).length;
   const ray = [...signal.origin, ...signal.direction, signal.length];
-  if (signal.volume.kind) return ask("marschner_lobb", signal.volume.samples, ray);
-  return ask("trilinear", Int32Array.from(signal.volume.size), signal.volume.values, ray);
+  if (signal.volume.kind) return ask("marschner_lobb", signal.volume.samples, ray).length;
+  return ask("trilinear", Int32Array.from(signal.volume.size), signal.volume.values, ray).length;
 }
 
 function compute() {
-  give_signal();
+  const length = give_signal();
   ask("transfer", state.points.length, state.points.flatMap(({ s, value, color }) => [s, value, ...color]), state.kind === "opacity" ? 1 : 0, Number(state.emission === "plain"));
-  const { length } = ask("answer", 1e6, 0);
   if (!(length > 0)) throw new Error("the ray is empty: its ends are one point");
   const step = length / state.steps;
   answer = ask("answer", step, state.phase);
@@ -197,9 +209,14 @@ function compute() {
 
 // --- plots ---
 
+const power_of_ten = (x) => (x === 1 ? "1" : "10" + String(Math.round(Math.log10(x))).replace(/./g, (letter) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(letter)]));
+
 /** Axes with ticks on a plot; gives the scales of both. */
 function axes(svg, { x, y, x_label, y_label, y_log = false }) {
-  const [width, height] = svg.getAttribute("viewBox").split(" ").slice(2).map(Number);
+  // As wide as the page has it, so that letters keep their size.
+  const width = Math.max(260, Math.round(svg.getBoundingClientRect().width));
+  const height = Number(svg.dataset.height);
+  svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
   const [left, right, top, bottom] = [54, width - 12, 22, height - 42];
   svg.replaceChildren();
   const place = ([low, high], from, to) => (value) => from + ((value - low) / (high - low)) * (to - from);
@@ -220,7 +237,7 @@ function axes(svg, { x, y, x_label, y_label, y_log = false }) {
   const y_ticks = y_log ? Array.from({ length: Math.round(Math.log10(y[1] / y[0]) / 2) + 1 }, (_, i) => y[1] / 100 ** i) : nice(y);
   for (const tick of y_ticks) {
     drawn(svg, "line", { class: "grid", x1: left, x2: right, y1: at_y(tick), y2: at_y(tick) });
-    drawn(svg, "text", { x: left - 7, y: at_y(tick) + 4, "text-anchor": "end" }, y_log ? tick.toExponential(0).replace("-", "−") : tick);
+    drawn(svg, "text", { x: left - 7, y: at_y(tick) + 4, "text-anchor": "end" }, y_log ? power_of_ten(tick) : tick);
   }
   drawn(svg, "path", { class: "axis", fill: "none", d: `M${left} ${top}V${bottom}H${right}` });
   drawn(svg, "text", { x: (left + right) / 2, y: height - 6, "text-anchor": "middle" }, x_label);
@@ -362,7 +379,9 @@ function show_point() {
 // --- the table ---
 
 const shown_number = (x) => x.toFixed(6).replace("-", "−");
-const shown_error = (x) => x.toExponential(1).replace("-", "−");
+const shown_error = (x) => (x === 0 ? "0" : x.toExponential(1).replace("-", "−"));
+
+const BAR_DECADES = 8;
 
 function swatch(color) {
   const result = element("span", { class: "swatch" });
@@ -371,7 +390,7 @@ function swatch(color) {
 }
 
 function bar(error) {
-  const share = (x) => clamp(1 + Math.log10(x) / 16, 0, 1) * 100;
+  const share = (x) => clamp(1 + Math.log10(x) / BAR_DECADES, 0, 1) * 100;
   const result = element("span", { class: "bar", "aria-hidden": true }, element("i"), element("b"));
   result.firstChild.style.width = `${error > 0 ? share(error) : 0}%`;
   result.lastChild.style.left = `${share(1 / 510)}%`;
@@ -408,6 +427,7 @@ function show_answers() {
     const row = scheme.why
       ? row_of([element("td", {}, button), element("td", { class: "why", colspan: 7 }, scheme.why)])
       : row_of([element("td", {}, swatch(scheme.color), button), shown_error(error_of(scheme)), bar(error_of(scheme)), ...[...scheme.color, scheme.opacity].map(shown_number), String(scheme.samples)]);
+    if (!scheme.why && error_of(scheme) <= error_bound) row.cells[1].className = "noise";
     row.dataset.scheme = name;
     row.classList.toggle("chosen", name === state.scheme);
     body.append(row);
@@ -458,17 +478,19 @@ function show_slabs() {
   }
   of_id("slabs").replaceChildren(head, body);
 
-  const { at_x, at_y, top, bottom } = axes(of_id("angle_plot"), { x: [0, 180], y: [1e-6, 1], y_log: true, x_label: "angle between the normals (degrees)", y_label: "error (linear light)" });
+  const { at_x, at_y, top, bottom } = axes(of_id("angle_plot"), { x: [0, 180], y: [1e-6, 100], y_log: true, x_label: "angle between the normals (degrees)", y_label: "error (linear light)" });
   const svg = of_id("angle_plot");
   drawn(svg, "line", { class: "axis", x1: at_x(slabs.angles[index]), x2: at_x(slabs.angles[index]), y1: top, y2: bottom });
   const key = of_id("angle_key");
   key.replaceChildren();
   DRAWN_SHADINGS.forEach((name, i) => {
     const points = rows.map((other, j) => `${j ? "L" : "M"}${at_x(slabs.angles[j]).toFixed(1)} ${at_y(slab_errors(other, name)[2]).toFixed(1)}`).join("");
-    drawn(svg, "path", { fill: "none", stroke: COLORS[i], "stroke-width": 2, "stroke-dasharray": ["", "8 3", "2 3", "8 3 2 3", "5 5", "10 2"][i], d: points });
-    const mark = element("span", { class: "key" });
-    mark.style.color = COLORS[i];
-    key.append(mark, `${name} \u2003`);
+    const look = { class: "method", fill: "none", stroke: COLORS[i], "stroke-width": 2.5, "stroke-dasharray": DASHES[i] };
+    drawn(svg, "path", { ...look, d: points });
+    const item = element("span", { class: "together" });
+    drawn(drawn(item, "svg", { class: "line", viewBox: "0 0 36 10" }), "path", { ...look, d: "M0 5H36" });
+    item.append(name);
+    key.append(item, " ");
   });
 }
 
@@ -585,6 +607,13 @@ function listen() {
   on("copy", "click", () => {
     of_id("case").select();
     navigator.clipboard?.writeText(of_id("case").value);
+  });
+  let width = innerWidth;
+  window.addEventListener("resize", () => {
+    if (width === innerWidth) return; // phones hide their bars while they scroll
+    width = innerWidth;
+    changed();
+    show_slabs();
   });
   on("angle", "input", show_slabs);
   on("highlight", "change", show_slabs);
