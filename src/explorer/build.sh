@@ -4,7 +4,7 @@
 set -euo pipefail
 
 folder=$(mkdir -p "$1" && cd "$1" && pwd)
-jobs=${2:-1}
+jobs=${2:-$(nproc)}
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 command -v em++ >/dev/null || { echo "build.sh: em++ is missing: the package emscripten has it" >&2; exit 3; }
 # Its node modules stand where only Debian's own node looks.

@@ -213,7 +213,7 @@ const char* explorer_schemes() {
 
 const char* explorer_trilinear(const int* size, const double* voxels, const double* ray) {
   return answered([&]() -> std::string {
-    Grid grid{.size = {size[0], size[1], size[2]}};
+    Grid grid{.size = {size[0], size[1], size[2]}, .values = {}};
     for (int axis = 0; axis < 3; ++axis)
       if (size[axis] < 1 || size[axis] > 1024) throw InputError("1 to 1024 voxels on each axis are allowed");
     const std::int64_t count = grid.size[0] * grid.size[1] * grid.size[2];

@@ -105,7 +105,7 @@ def main(program, place, output):
         "ENGINE": engine,
         "ENGINE_BINARY": binary,
         "LIT_SLABS": json.dumps(lit_slabs(program), separators=(",", ":")),
-        "SHADINGS": json.dumps({row["name"]: row["summary"] for row in summaries}),
+        "SHADINGS": json.dumps({row["name"]: row["summary"] for row in summaries if row["name"] in SHADINGS}),
         "SCRIPT": (HERE / "page.js").read_text(encoding="utf-8").strip(),
     }
     page = (HERE / "page.html").read_text(encoding="utf-8")

@@ -67,7 +67,7 @@ class Folders(unittest.TestCase):
 
     def test_targets_stand_on_top_of_each_other(self):
         """The library knows no documents, documents no experiments, experiments no program."""
-        floors = ["raytruth/", "raytruth/documents/", ("experiments/", "measures/"), "program/"]
+        floors = ["raytruth/", "raytruth/documents/", ("experiments/", "measures/"), ("program/", "python/", "explorer/")]
 
         def floor(name):
             return max(i for i, prefix in enumerate(floors) if name.startswith(prefix))
