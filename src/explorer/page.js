@@ -246,11 +246,11 @@ function axes(svg, { x, y, x_label, y_label, y_log = false }) {
 }
 
 /** A round thing to drag: `move(dx, dy)` gets the way since the last call, in units of the plot, also from arrow keys. */
-function handle(svg, { x, y, fill, label, chosen, key_step, move, choose, value_text }) {
+function handle(svg, { x, y, radius = 6.5, fill, label, chosen, key_step, move, choose, value_text }) {
   const group = drawn(svg, "g", { class: "handle" + (chosen ? " chosen" : ""), tabindex: 0, role: "slider", "aria-label": label, "aria-valuenow": value_text, "aria-valuetext": value_text });
   drawn(group, "circle", { class: "reach", cx: x, cy: y, r: 20 });
-  drawn(group, "circle", { class: "ring", cx: x, cy: y, r: 10 });
-  drawn(group, "circle", { class: "dot", cx: x, cy: y, r: 6.5, fill });
+  drawn(group, "circle", { class: "ring", cx: x, cy: y, r: radius + 3.5 });
+  drawn(group, "circle", { class: "dot", cx: x, cy: y, r: radius, fill });
   group.addEventListener("pointerdown", (event) => {
     event.preventDefault();
     choose?.();
@@ -262,7 +262,11 @@ function handle(svg, { x, y, fill, label, chosen, key_step, move, choose, value_
       last = now;
     };
     // On the window: the handle itself is drawn anew with every move.
-    const done = () => ["pointermove", "pointerup", "pointercancel"].forEach((name, i) => window.removeEventListener(name, i ? done : moved));
+    const index = [...svg.querySelectorAll(".handle")].indexOf(group);
+    const done = () => {
+      ["pointermove", "pointerup", "pointercancel"].forEach((name, i) => window.removeEventListener(name, i ? done : moved));
+      svg.querySelectorAll(".handle")[index]?.focus(); // so that arrow keys go on
+    };
     window.addEventListener("pointermove", moved);
     window.addEventListener("pointerup", done);
     window.addEventListener("pointercancel", done);
@@ -301,9 +305,9 @@ function draw_signal() {
   const step = answer.length / state.steps;
   const count = answer.samples.length;
   answer.samples.forEach(([t, s], i) => {
-    if (i === 0 || i === count - 1) return void drawn(svg, "circle", { cx: at_x(t), cy: at_y(s), r: 4.5, fill: "Canvas", stroke: "currentColor", "stroke-width": 1.5 });
+    if (i === 0 || i === count - 1) return void drawn(svg, "circle", { cx: at_x(t), cy: at_y(s), r: count > 16 ? 2.5 : 4.5, fill: "Canvas", stroke: "currentColor", "stroke-width": 1.5 });
     handle(svg, {
-      x: at_x(t), y: at_y(s), fill: "Canvas", label: `sample ${i}`, value_text: t.toFixed(3), key_step: ((right - left) / answer.length) * step * 0.01,
+      x: at_x(t), y: at_y(s), radius: count > 16 ? 3.5 : 6.5, fill: "Canvas", label: `sample ${i}`, value_text: t.toFixed(3), key_step: ((right - left) / answer.length) * step * 0.01,
       move: (dx) => {
         const phase = state.phase + ((dx / (right - left)) * answer.length) / step;
         set_phase(phase - Math.floor(phase));
@@ -338,16 +342,9 @@ function draw_transfer() {
       x: at_x(point.s), y: at_y(point.value), fill: hex_of(point.color), label: `point ${i + 1} of the transfer function`, chosen: i === state.chosen_point,
       value_text: `s ${point.s}, ${state.kind} ${point.value}`, key_step: (right - left) / 100,
       choose: () => choose_point(i),
-      move: (dx, dy) => move_point(i, point_way(i, (dx / (right - left)) * (high - low)), state.points[i].value - (dy / (bottom - top)) * transfer_top),
+      move: (dx, dy) => move_point(i, state.points[i].s + (dx / (right - left)) * (high - low), state.points[i].value - (dy / (bottom - top)) * transfer_top),
     }),
   );
-}
-
-// Ways shorter than a rounding of what is shown add up.
-let left_over = { s: 0, index: -1 };
-function point_way(index, way) {
-  if (left_over.index !== index) left_over = { s: 0, index };
-  return state.points[index].s + way;
 }
 
 const LEAST_GAP = 0.001; // of neighbouring points: jumps are the program's matter
@@ -383,11 +380,19 @@ const shown_error = (x) => (x === 0 ? "0" : x.toExponential(1).replace("-", "−
 
 const BAR_DECADES = 8;
 
+/** A patch of a colour, or the room of one. */
 function swatch(color) {
   const result = element("span", { class: "swatch" });
-  result.style.background = hex_of(color);
+  if (color) result.style.background = hex_of(color);
+  else result.style.visibility = "hidden";
   return result;
 }
+
+/** A name that may break behind its underscores. */
+const words_of = (name) => name.split(/(?<=_)/).flatMap((word) => [word, element("wbr")]);
+
+/** A row's first cell: a patch, and what stands beside it. */
+const named = (color, name) => element("td", {}, element("span", { class: "name" }, swatch(color), name));
 
 function bar(error) {
   const share = (x) => clamp(1 + Math.log10(x) / BAR_DECADES, 0, 1) * 100;
@@ -409,7 +414,7 @@ function show_answers() {
   const { color, opacity, error_bound, converged } = answer.reference;
   of_id("certified").textContent = `Certified, each ± ${error_bound.toExponential(2).replace("-", "−")}: red ${shown_number(color[0])}, green ${shown_number(color[1])}, blue ${shown_number(color[2])}, opacity ${shown_number(opacity)}` + (converged ? "" : "; the radius holds, but is larger than aimed at");
   const head = element("thead", {}, row_of(["scheme", "error", "", "red", "green", "blue", "opacity", "samples"], "th"));
-  const certified = row_of([element("td", {}, swatch(color), "certified"), "± " + shown_error(error_bound), bar(error_bound), ...[...color, opacity].map(shown_number), ""]);
+  const certified = row_of([named(color, "certified"), "± " + shown_error(error_bound), bar(error_bound), ...[...color, opacity].map(shown_number), ""]);
   certified.className = "certified";
   let rows = schemes.filter(({ name }) => of_id("all_schemes").checked || MAIN_SCHEMES.includes(name) || name === state.scheme);
   if (of_id("order").value === "error") {
@@ -419,14 +424,14 @@ function show_answers() {
   const body = element("tbody", {}, certified);
   for (const { name, summary } of rows) {
     const scheme = answer.schemes[name];
-    const button = element("button", { type: "button", title: summary, "aria-pressed": name === state.scheme }, name);
+    const button = element("button", { type: "button", title: summary, "aria-pressed": name === state.scheme }, ...words_of(name));
     button.addEventListener("click", () => {
       state.scheme = name;
       changed();
     });
     const row = scheme.why
-      ? row_of([element("td", {}, button), element("td", { class: "why", colspan: 7 }, scheme.why)])
-      : row_of([element("td", {}, swatch(scheme.color), button), shown_error(error_of(scheme)), bar(error_of(scheme)), ...[...scheme.color, scheme.opacity].map(shown_number), String(scheme.samples)]);
+      ? row_of([named(null, button), element("td", { class: "why", colspan: 7 }, scheme.why)])
+      : row_of([named(scheme.color, button), shown_error(error_of(scheme)), bar(error_of(scheme)), ...[...scheme.color, scheme.opacity].map(shown_number), String(scheme.samples)]);
     if (!scheme.why && error_of(scheme) <= error_bound) row.cells[1].className = "noise";
     row.dataset.scheme = name;
     row.classList.toggle("chosen", name === state.scheme);
@@ -462,19 +467,19 @@ function show_slabs() {
   const light = sum(row.ambient, ...row.reference);
   of_id("slab_certified").textContent = `Certified by the program, each ± ${row.radius.toExponential(2).replace("-", "−")}: diffuse ${row.reference[0].map(shown_number).join(", ")}; specular ${shown_number(row.reference[1][0])}; opacity ${shown_number(row.opacity)}`;
   const head = element("thead", {}, row_of(["method", "error", "diffuse error", "specular error", "red", "green", "blue"], "th"));
-  const certified = row_of([element("td", {}, swatch(light), "certified"), "", "", "", ...light.map(shown_number)]);
+  const certified = row_of([named(light, "certified"), "", "", "", ...light.map(shown_number)]);
   certified.className = "certified";
   const body = element("tbody", {}, certified);
   for (const name of Object.keys(row.schemes)) {
     const scheme = row.schemes[name];
-    const title = element("span", { title: shadings[name] }, name);
+    const title = element("span", { title: shadings[name] }, ...words_of(name));
     if (scheme.why) {
-      body.append(row_of([element("td", {}, title), element("td", { class: "why", colspan: 6 }, scheme.why)]));
+      body.append(row_of([named(null, title), element("td", { class: "why", colspan: 6 }, scheme.why)]));
       continue;
     }
     const color = sum(row.ambient, ...scheme);
     const [diffuse, specular, both] = slab_errors(row, name);
-    body.append(row_of([element("td", {}, swatch(color), title), ...[both, diffuse, specular].map(shown_error), ...color.map(shown_number)]));
+    body.append(row_of([named(color, title), ...[both, diffuse, specular].map(shown_error), ...color.map(shown_number)]));
   }
   of_id("slabs").replaceChildren(head, body);
 
