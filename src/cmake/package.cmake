@@ -51,7 +51,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # Plots; a volume that is always at hand; what programs that use the library include.
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-matplotlib, mricron-data")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-matplotlib, python3-numpy, mricron-data")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
     "cmake, g++, libboost-dev, libegl-dev, libeigen3-dev, libflint-arb-dev, libfmt-dev, libnifti-dev, libpng-dev, libpugixml-dev, libtbb-dev, libteem-dev, nlohmann-json3-dev, zlib1g-dev")
 include(CPack)

@@ -108,7 +108,7 @@ Json camera_json(const Camera& camera) {
   return json;
 }
 
-/// Of the ways without what is refused, a curve for each method, and the error that is asked for.
+/// A curve for each method, without the ways that are refused, and the error that is asked for.
 Json plot_json(const AdviceRequest& request) {
   return {{"title", "What keeps the error, and what it costs"},
           {"note", fmt::format("asked for: {} of at most {}", words_of(request.kind), request.error)},

@@ -71,7 +71,8 @@ void write_radii(const Rendering& rendering, const std::filesystem::path& file, 
                    .is_certified = rendering.is_certified,
                    .covers_camera = rendering.covers_camera,
                    .tolerance = rendering.tolerance,
-                   .not_converged = rendering.not_converged};
+                   .not_converged = rendering.not_converged,
+                   .unresolved = rendering.unresolved};
   result.update(radius_json(stored));
   if (is_picture) {
     result["bound_holds_for"] =

@@ -93,6 +93,14 @@ std::string description_text(const Json& description, const PiecewiseLinear& tra
   return text;
 }
 
+std::string isosurfaces_text(const std::vector<Isosurface>& isosurfaces) {
+  if (isosurfaces.empty()) return {};
+  std::string text = fmt::format("\n{:>14}  {:>12}  {}\n", "isosurface", "opacity", "red, green, blue");
+  for (const auto& [s, opacity, color] : isosurfaces)
+    text += fmt::format("{:>14.7g}  {:>12.7g}  {:.5g}, {:.5g}, {:.5g}\n", s, opacity, color[0], color[1], color[2]);
+  return text;
+}
+
 /// The scene's document that asks for what the command line says.
 JsonReader request_of(const TransferOptions& options) {
   const auto absolute = [](const std::string& path) { return std::filesystem::absolute(path).string(); };
@@ -132,16 +140,17 @@ int show_transfer(const TransferOptions& options) {
     volume = transfer_volume(read.grid);
   }
   std::vector<std::string> warnings;
-  const TransferDocument read =
-      read_transfer_function(request_of(options), {.volume = volume ? &*volume : nullptr}, warnings);
+  const TransferDocument read = read_transfer_function(
+      request_of(options), {.volume = volume ? &*volume : nullptr, .opacity = {}, .takes_isosurfaces = true}, warnings);
   for (const std::string& warning : warnings) say(warning);
-  if (!options.output.empty()) write_whole(options.output, transfer_function_json(read.transfer).dump(2) + "\n");
+  if (!options.output.empty())
+    write_whole(options.output, transfer_function_json(read.transfer, read.isosurfaces).dump(2) + "\n");
   Json description = read.description;
   if (!options.json) {
-    print(description_text(description, read.transfer));
+    print(description_text(description, read.transfer) + isosurfaces_text(read.isosurfaces));
     return 0;
   }
-  description.update(transfer_function_json(read.transfer));
+  description.update(transfer_function_json(read.transfer, read.isosurfaces));
   if (!warnings.empty()) description["warnings"] = warnings;
   print(description.dump(2) + "\n");
   return 0;

@@ -56,6 +56,13 @@ for name in ("include/raytruth/core/chain.hpp", "include/raytruth/rules/README.m
     expect((ROOT / "usr" / name).is_file(), name)
 expect(not list(ROOT.rglob("node_modules")), "nothing of npm is in it")
 
+modules = ROOT / "usr/lib/python3/dist-packages"
+if "Python module: yes" in run(program, "--version", **as_user):
+    script = "import raytruth; print(raytruth.slab({'points': [{'s': 0, 'extinction': 1, 'color': [1, 1, 1]}]}, 0, 1).opacity)"
+    python = {**as_user, "env": {**as_user["env"], "PYTHONPATH": str(modules)}}
+    expect(run("/usr/bin/python3", "-c", script, **python).startswith("0.63212"), "the Python module is imported")
+    expect((modules / "raytruth.pyi").is_file(), "raytruth.pyi")
+
 if shutil.which("apt-get"):
     simulated = run("apt-get", "-s", "install", "--no-install-recommends", package.resolve())
     expect("Inst raytruth" in simulated, "apt-get would install it")

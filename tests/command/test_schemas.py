@@ -54,6 +54,7 @@ BEYOND_CASE_SCHEMA = re.compile(
     | /transfer_function\ =\ "word"
     | /transfer_function/points/./(s|extinction|color/.)\ =\ 1e\+300
     | /transfer_function/points/1/s\ =\ -1
+    | /transfer_function/isosurfaces/(0/s\ =\ 1e\+300|1/s\ =\ -1)  # not ascending
     | /(slab/(front|back)_normal|lighting/(light|half))/\d\ =\ (-1|1e\+300)  # no unit vector
     """,
     re.VERBOSE,
@@ -115,7 +116,9 @@ class Agreement(ProgramTest):
         # Normals and directions that no change of a component leaves as long as they are.
         tilted = changed(changed(SLAB, "/slab/front_normal", [0, 0.6, 0.8]), "/slab/back_normal", [0.6, 0, 0.8])
         tilted = changed(changed(tilted, "/lighting/light", [0, 0.6, 0.8]), "/lighting/half", [0.6, 0, 0.8])
-        for case in ({"raytruth": "case/1"} | RAY, VOLUME_RAY, {"raytruth": "case/1"} | tilted, changed(RAY, "/transfer_function", opacity)):
+        surfaces = changed(RAY, "/transfer_function/isosurfaces", [{"s": s, "opacity": 0.5, "color": [1, 1, 1]} for s in (0.25, 0.5)])
+        alone = changed(RAY, "/transfer_function", {"isosurfaces": surfaces["transfer_function"]["isosurfaces"]})
+        for case in ({"raytruth": "case/1"} | RAY, VOLUME_RAY, {"raytruth": "case/1"} | tilted, changed(RAY, "/transfer_function", opacity), surfaces, alone):
             self.assert_agreement("eval", schema, mutations(case), BEYOND_CASE_SCHEMA)
 
     def test_what_is_said_of_files(self):

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -31,8 +32,8 @@ constexpr std::int64_t few_pixels = 4096;  // all of which are looked at
 // Tables are tried at so many steps, the longest of those at which exact slabs keep the error, or nearly.
 constexpr std::size_t steps_with_tables = 2;
 constexpr double nearly = 1.25;
-// A larger table does not help where the error is within this factor of that of exact slabs.
-constexpr double as_good_as_exact = 1.02;
+// Where a table twice as large left that much of the error, still larger ones do not help.
+constexpr double no_better = 0.95;
 
 /// What a slab's table of a scheme may be.
 struct TableChoice {
@@ -204,7 +205,7 @@ class Search {
       return conclude();
     }
     std::int64_t count = first_rays;
-    for (std::uint32_t round = 0; !candidates_.empty(); ++round) {
+    for (std::uint32_t round = 0;; ++round) {
       look_at(rays_of_round(request_, count, round), round == 0);
       if (advice_.rays >= request_.most_rays || !is_open()) break;
       count = std::min(advice_.rays, request_.most_rays - advice_.rays);
@@ -226,13 +227,27 @@ class Search {
   /// Tables at the longest steps at which exact slabs keep the error, or nearly; each size is looked at before a larger
   /// one is made.
   void look_at_tables(const std::vector<PixelRay>& rays, const std::vector<PixelLight>& truth) {
+    // Exact slabs take long, and only tell which steps to look at.
+    constexpr std::size_t share = 4;
+    std::vector<PixelRay> some_rays;
+    std::vector<PixelLight> some_truth;
+    for (std::size_t i = 0; i < rays.size(); i += share) {
+      some_rays.push_back(rays[i]);
+      some_truth.push_back(truth[i]);
+    }
     for (const TableChoice& choice : table_choices(request_.scene)) {
       std::size_t found = 0;
       Candidate exact;
+      std::optional<Way> longer;  // the step before, which exceeds the error: what the next cheaper way would cost
       for (const double step : steps) {
         exact = {.way = {.scheme = std::string(choice.scheme), .step = step}};
-        look_at(exact, rays, truth);
-        if (!exact.way.refusal.empty() || exact.way.error.value > nearly * request_.error) continue;
+        look_at(exact, some_rays, some_truth);
+        if (!exact.way.refusal.empty()) continue;
+        if (exact.way.error.value > nearly * request_.error) {
+          longer = exact.way;
+          continue;
+        }
+        if (longer) look_at_tables_of(*std::exchange(longer, {}), choice, rays, truth);
         look_at_tables_of(exact.way, choice, rays, truth);
         // Those that only nearly keep it may fail with every table.
         if (exact.way.error.value <= request_.error && ++found == steps_with_tables) break;
@@ -246,6 +261,7 @@ class Search {
   void look_at_tables_of(Way exact, const TableChoice& choice, const std::vector<PixelRay>& rays,
                          const std::vector<PixelLight>& truth) {
     count_reads(exact, true, request_.scene, rays);
+    double before = std::numeric_limits<double>::infinity();
     for (const std::size_t size : choice.sizes) {
       double least = std::numeric_limits<double>::infinity();
       for (const char* const format : table_format_words) {
@@ -259,7 +275,8 @@ class Search {
         look_at(candidates_.back(), rays, truth);
         least = std::min(least, candidates_.back().way.error.value);
       }
-      if (least <= as_good_as_exact * exact.error.value) return;
+      if (least > no_better * before) return;
+      before = least;
     }
   }
 
@@ -298,7 +315,7 @@ class Search {
     way.error = has_all_ ? error_of_all(request_.kind, candidate.errors)
                 : request_.kind == ErrorKind::rmse
                     ? rmse_of_sample(candidate.errors, request_.confidence)
-                    : largest_of_sample(candidate.errors, static_cast<double>(advice_.pixels));
+                    : largest_of_sample(candidate.errors, static_cast<double>(advice_.pixels), request_.confidence);
     way.standing = way.error.high <= request_.error ? Standing::keeps
                    : way.error.low > request_.error ? Standing::exceeds
                                                     : Standing::undecided;

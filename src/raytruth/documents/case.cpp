@@ -7,6 +7,8 @@
 #include "raytruth/documents/read_transfer_function.hpp"
 #include "raytruth/metrics/signal_error.hpp"
 #include "raytruth/reference/ray_truth.hpp"
+#include "raytruth/reference/surface_integral.hpp"
+#include "raytruth/reference/surroundings_of.hpp"
 #include "raytruth/schemes/scheme_integral.hpp"
 #include "raytruth/signals/marschner_lobb.hpp"
 #include "raytruth/signals/ray_field.hpp"
@@ -27,6 +29,8 @@ using Json = nlohmann::ordered_json;
 constexpr double largest_value = 0x1p900;
 
 constexpr std::string_view why_no_integral = "the case states no transfer function";
+constexpr std::string_view why_no_surfaces =
+    "the transfer function has isosurfaces, and this scheme integrates matter alone";
 
 std::array<double, 3> read_place(const JsonReader& json) {
   const Vector3<double> vector = read_vector(json);
@@ -85,6 +89,7 @@ void trace(const JsonReader& json, const Field& field, const Ray& ray, Case& res
   if (result.transfer) {
     result.signal_error = field.error(ray, chain);
     result.precise_signal = field.trace_precisely(ray);
+    result.surroundings = surroundings_of(field, ray.direction);
   }
   result.border = field.border();
   if (chain.pieces.empty() && has_no_extent(field.grid(), field.border()))
@@ -121,17 +126,26 @@ bool is_finite(const Vector3<double>& color, double opacity) {
   return color.isFinite().all() && std::isfinite(opacity);
 }
 
-/// The certified answer to the case.
+/// Where the ray meets the case's isosurfaces.
 template <int Degree>
-Certified truth_of(const Case& ray, const Chain<Degree>& signal) {
+SurfaceHits hits_of(const Case& ray, const Chain<Degree>& /*signal*/) {
+  std::vector<double> scalars;
+  for (const Isosurface& surface : ray.isosurfaces) scalars.push_back(surface.s);
+  return surface_hits(std::get<PreciseChain<Degree>>(ray.precise_signal), scalars, ray.surroundings);
+}
+
+/// The certified answer to the case; `hits`: of its isosurfaces, null if it has none.
+template <int Degree>
+Certified truth_of(const Case& ray, const Chain<Degree>& signal, const SurfaceHits* hits) {
   if (const auto* const marschner_lobb = std::get_if<MarschnerLobbRay>(&ray.formula))
     return arb_integral(*marschner_lobb, *ray.transfer, ray.emission);
   if (const auto* const analytic = std::get_if<AnalyticSignal>(&ray.formula))
     return arb_integral(*analytic, *ray.transfer, ray.emission);
+  const auto& precise = std::get<PreciseChain<Degree>>(ray.precise_signal);
+  if (hits != nullptr) return SurfaceIntegral(*ray.transfer, ray.emission, ray.isosurfaces)(precise, *hits);
   RayIntegral integral(*ray.transfer, ray.emission);
   return ray_truth(
-      integral, signal,
-      ray.signal_error, [&ray]() -> const auto& { return std::get<PreciseChain<Degree>>(ray.precise_signal); });
+      integral, signal, ray.signal_error, [&precise]() -> const auto& { return precise; });
 }
 
 Json truth_json(const Certified& truth) {
@@ -139,6 +153,21 @@ Json truth_json(const Certified& truth) {
   Json answer{{"color", color_json(truth.color)}, {"opacity", truth.opacity}, {"error_bound", truth.radius}};
   add_status(answer, truth.status);
   return answer;
+}
+
+/// The hits of isosurfaces, each with its place in binary64 and what that may be off by.
+void add_hits(const SurfaceHits& found, Json& answer) {
+  Json hits = Json::array();
+  for (const SurfaceHit& hit : found.hits) {
+    const auto t = static_cast<double>(hit.t);
+    const double radius = std::nextafter(hit.error + std::abs(static_cast<double>(hit.t - t)), HUGE_VAL);
+    hits.push_back({{"t", t}, {"radius", radius}, {"surface", hit.surface}, {"rising", hit.is_rising}});
+  }
+  Json unresolved = Json::array();
+  for (const UnresolvedContact& contact : found.unresolved)
+    unresolved.push_back({{"from", contact.from}, {"to", contact.to}, {"surface", contact.surface}});
+  answer["hits"] = std::move(hits);
+  answer["unresolved"] = std::move(unresolved);
 }
 
 Json difference_json(const Difference& difference) {
@@ -236,8 +265,13 @@ Case CaseReader::read(const JsonReader& json, std::vector<std::string>& warnings
     std::vector<std::string> read_again;  // the signal tells them
     std::optional<TransferVolume> volume;
     if (has_volume && is_of_another_program(*transfer)) volume = transfer_volume(read_volume_of(signal, read_again));
-    TransferDocument read = read_transfer_function(*transfer, {.volume = volume ? &*volume : nullptr}, warnings);
+    TransferDocument read = read_transfer_function(
+        *transfer, {.volume = volume ? &*volume : nullptr, .opacity = {}, .takes_isosurfaces = true}, warnings);
     ray.transfer = std::move(read.transfer);
+    ray.isosurfaces = std::move(read.isosurfaces);
+    if (!ray.isosurfaces.empty() && (kind == "marschner_lobb" || kind == "analytic"))
+      transfer->refuse(fmt::format("isosurfaces with the signal {}", kind),
+                       "them with piecewise_polynomial, trilinear or tricubic signals, whose crossings are certified,");
     if (read.is_of_another_program) ray.transfer_description = std::move(read.description);
   }
   ray.emission = read_emission(json);
@@ -300,10 +334,15 @@ const Grid& CaseReader::read_volume_of(const JsonReader& signal, std::vector<std
 Json evaluate(const Case& ray) {
   return std::visit(
       [&ray](const auto& signal) -> Json {
+        std::optional<SurfaceHits> hits;
+        if (!ray.isosurfaces.empty()) hits = hits_of(ray, signal);
         std::optional<Certified> truth;
-        if (ray.transfer) truth = truth_of(ray, signal);
+        if (ray.transfer) truth = truth_of(ray, signal, hits ? &*hits : nullptr);
         Json schemes = Json::object();
-        if (names_a_scheme(ray)) {
+        if (hits) {
+          for (const std::string& scheme : ray.schemes)
+            if (scheme != "reference") schemes[scheme] = refused(why_no_surfaces);
+        } else if (names_a_scheme(ray)) {
           SchemeAnswers answer_of(ray, signal, truth ? &*truth : nullptr);
           for (const std::string& scheme : ray.schemes)
             if (scheme != "reference") schemes[scheme] = answer_of(scheme);
@@ -311,6 +350,7 @@ Json evaluate(const Case& ray) {
         Json answer{{"length", signal.length()}};
         if (ray.border) answer["border"] = name_of(*ray.border);
         answer["reference"] = truth ? truth_json(*truth) : refused(why_no_integral);
+        if (hits) add_hits(*hits, answer["reference"]);
         answer["schemes"] = std::move(schemes);
         if (!ray.transfer_description.is_null()) answer["transfer_function"] = ray.transfer_description;
         return answer;

@@ -5,12 +5,14 @@
 #include "raytruth/documents/outside_program.hpp"
 #include "raytruth/documents/volume_source.hpp"
 #include "raytruth/reference/arb_integral.hpp"
+#include "raytruth/reference/surface_hits.hpp"
 #include "raytruth/schemes/sampling.hpp"
 #include "raytruth/signals/analytic.hpp"
 #include "raytruth/signals/border.hpp"
 #include "raytruth/signals/piecewise_polynomial.hpp"
 #include "raytruth/signals/signal_error_bound.hpp"
 #include "raytruth/transfer/emission.hpp"
+#include "raytruth/transfer/isosurface.hpp"
 #include "raytruth/transfer/piecewise_linear.hpp"
 
 #include <nlohmann/json.hpp>
@@ -36,7 +38,9 @@ struct Case {
   SignalError signal_error = {};                                                    ///< of the chain
   std::variant<PreciseChain<3>, PreciseChain<largest_degree>> precise_signal = {};  ///< where there is no formula
   std::variant<std::monostate, MarschnerLobbRay, AnalyticSignal> formula = {};  ///< that the chain only approximates
-  std::optional<Border> border = {};                                            ///< of the volume, if there is one
+  std::vector<Isosurface> isosurfaces = {};
+  Surroundings surroundings = {};             ///< of a ray through a volume
+  std::optional<Border> border = {};          ///< of the volume, if there is one
   std::vector<OutsideProgram> programs = {};  ///< named among the schemes; `evaluate` leaves them out
 };
 

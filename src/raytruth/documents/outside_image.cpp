@@ -48,7 +48,7 @@ OutsideImage outside_image(const OutsideProgram& program, const Scene& scene, Js
   drawing["volume"] = voxels.string();
   drawing["spacing"] = scene.grid.spacing;
   drawing["border"] = name_of(scene.border);
-  drawing["transfer_function"] = transfer_function_json(scene.transfer);
+  drawing["transfer_function"] = transfer_function_json(scene.transfer, scene.isosurfaces);
   drawing["emission"] = scene.emission == Emission::plain ? "plain" : "associated";
   drawing["camera"] = camera_json(scene.camera);
   drawing["scheme"] = "reference";

@@ -15,21 +15,21 @@ Vector3<double> read_color(const JsonReader& json) {
   return {channels[0], channels[1], channels[2]};
 }
 
-/// Calls `make`; where a point is refused, its place in the document is named.
+/// Calls `make` for the items of a list; where one is refused, its place in the document is named.
 template <class Make>
-PiecewiseLinear with_place_of_point(const JsonReader& json, Make&& make) {
-  const auto points = json.at("points").items();
+auto with_place_of_item(const JsonReader& json, Make&& make) {
+  const auto items = json.items();
   try {
-    return make(points);
+    return make(items);
   } catch (const PointError& error) {
-    points[error.index].blame_for([&error]() -> PiecewiseLinear { throw InputError(error.what()); });
+    items[error.index].blame_for([&error] { throw InputError(error.what()); });
     throw;
   }
 }
 
 PiecewiseLinear read_opacity_points(const JsonReader& json) {
   const double unit_length = json.at("unit_length").positive_number();
-  return with_place_of_point(json, [&](const std::vector<JsonReader>& items) {
+  return with_place_of_item(json.at("points"), [&](const std::vector<JsonReader>& items) {
     std::vector<OpacityPoint> points;
     for (const JsonReader& item : items) {
       item.only({"s", "opacity", "color"});
@@ -40,7 +40,7 @@ PiecewiseLinear read_opacity_points(const JsonReader& json) {
 }
 
 PiecewiseLinear read_extinction_points(const JsonReader& json) {
-  return with_place_of_point(json, [](const std::vector<JsonReader>& items) {
+  return with_place_of_item(json.at("points"), [](const std::vector<JsonReader>& items) {
     std::vector<TransferPoint> points;
     for (const JsonReader& item : items) {
       item.only({"s", "extinction", "color"});
@@ -50,9 +50,40 @@ PiecewiseLinear read_extinction_points(const JsonReader& json) {
   });
 }
 
+std::vector<Isosurface> read_isosurfaces(const JsonReader& json) {
+  return with_place_of_item(json, [](const std::vector<JsonReader>& items) {
+    std::vector<Isosurface> isosurfaces;
+    for (const JsonReader& item : items) {
+      item.only({"s", "opacity", "color"});
+      isosurfaces.push_back({item.at("s").number(), item.at("opacity").number(0, 1), read_color(item.at("color"))});
+    }
+    check(isosurfaces);
+    return isosurfaces;
+  });
+}
+
 PiecewiseLinear read_points(const JsonReader& json) {
-  json.only({"points", "unit_length"});
+  // Without points there is nothing but the isosurfaces.
+  if (!json.find("points") && json.find("isosurfaces")) {
+    json.only({"isosurfaces"});
+    return PiecewiseLinear(std::vector<TransferPoint>(1));
+  }
+  json.only({"points", "unit_length", "isosurfaces"});
   return json.find("unit_length") ? read_opacity_points(json) : read_extinction_points(json);
+}
+
+/// A transfer function of this program.
+TransferDocument read_document(const JsonReader& json, const TransferContext& context) {
+  TransferDocument result{.transfer = read_points(json), .description = {}};
+  result.description = {{"points", result.transfer.points().size()}, {"color", "linear light"}};
+  if (result.transfer.is_linear_in_opacity()) result.description["opacity"] = "linear between points";
+  if (const auto isosurfaces = json.find("isosurfaces")) {
+    if (!context.takes_isosurfaces)
+      isosurfaces->refuse("isosurfaces here", "them in rays for `eval` and in scenes alone");
+    result.isosurfaces = read_isosurfaces(*isosurfaces);
+    result.description["isosurfaces"] = result.isosurfaces.size();
+  }
+  return result;
 }
 
 TransferFileRequest read_request(const JsonReader& json, const TransferContext& context) {
@@ -98,16 +129,13 @@ TransferDocument read_transfer_function(const JsonReader& json, const TransferCo
   }
   if (context.opacity)
     json.refuse("points with an opacity of their own", "another program's file together with --opacity");
-  PiecewiseLinear transfer =
-      json.is_string()
-          ? json.blame_for([&] { return read_points(JsonReader::from_file(json.resolve(json.text()).string())); })
-          : read_points(json);
-  nlohmann::ordered_json description{{"points", transfer.points().size()}, {"color", "linear light"}};
-  if (transfer.is_linear_in_opacity()) description["opacity"] = "linear between points";
-  return {std::move(transfer), std::move(description)};
+  if (!json.is_string()) return read_document(json, context);
+  return json.blame_for(
+      [&] { return read_document(JsonReader::from_file(json.resolve(json.text()).string()), context); });
 }
 
-nlohmann::ordered_json transfer_function_json(const PiecewiseLinear& transfer) {
+nlohmann::ordered_json transfer_function_json(const PiecewiseLinear& transfer,
+                                              const std::vector<Isosurface>& isosurfaces) {
   using Json = nlohmann::ordered_json;
   Json points = Json::array();
   for (std::size_t i = 0; i < transfer.points().size(); ++i) {
@@ -122,6 +150,10 @@ nlohmann::ordered_json transfer_function_json(const PiecewiseLinear& transfer) {
   }
   Json document{{"points", std::move(points)}};
   if (transfer.is_linear_in_opacity()) document["unit_length"] = transfer.unit_length();
+  for (const Isosurface& surface : isosurfaces)
+    document["isosurfaces"].push_back({{"s", surface.s},
+                                       {"opacity", surface.opacity},
+                                       {"color", {surface.color[0], surface.color[1], surface.color[2]}}});
   return document;
 }
 

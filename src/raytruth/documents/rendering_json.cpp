@@ -25,6 +25,7 @@ nlohmann::ordered_json radius_json(const Rendering& rendering) {
         "sum of the differences of two quadratures (7 and 15 nodes) over all panels of a ray: an "
         "estimate, not a bound; rounding is left out";
   }
+  if (rendering.unresolved) result["unresolved_contacts"] = *rendering.unresolved;
   result["not_converged"] = rendering.not_converged;
   result["tolerance"] = rendering.tolerance;
   if (rendering.not_converged == 0) return result;

@@ -241,6 +241,13 @@ std::string read_scheme(const JsonReader& json) {
   return json.word(names);
 }
 
+/// Refuses what renders no isosurfaces.
+void refuse_without_surfaces(const JsonReader& json, const Scene& scene) {
+  if (scene.scheme != "reference")
+    json.at("scheme").refuse(fmt::format("{} with isosurfaces", scene.scheme), "the scheme reference");
+  if (scene.shading) json.at("shading").refuse("light on isosurfaces", "isosurfaces without shading");
+}
+
 }  // namespace
 
 SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
@@ -270,11 +277,15 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   scene.camera = says_more_than_size ? read_camera(*camera, scene.grid) : fit_camera(camera, result);
   const JsonReader transfer = json.at("transfer_function");
   const TransferVolume volume = transfer_volume(scene.grid);
-  TransferDocument read = read_transfer_function(
-      transfer,
-      {.volume = &volume, .opacity = options.opacity, .ignores_gradient_opacity = options.ignores_gradient_opacity},
-      result.warnings);
+  TransferDocument read = read_transfer_function(transfer,
+                                                 {.volume = &volume,
+                                                  .opacity = options.opacity,
+                                                  .ignores_gradient_opacity = options.ignores_gradient_opacity,
+                                                  .takes_isosurfaces = true},
+                                                 result.warnings);
   scene.transfer = std::move(read.transfer);
+  scene.isosurfaces = std::move(read.isosurfaces);
+  if (!scene.isosurfaces.empty()) refuse_without_surfaces(json, scene);
   result.transfer_function = std::move(read.description);
   if (scene.shading && scene.transfer.is_linear_in_opacity()) result.transfer_function["lit"] = sampled_opacity;
   // RayIntegral refuses numbers that it cannot calculate with.

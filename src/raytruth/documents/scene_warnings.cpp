@@ -97,6 +97,16 @@ void warn_of_what_is_not_seen(const Scene& scene, std::vector<std::string>& warn
     if (has_no_extent(grid, scene.border)) warnings.emplace_back(why_no_extent);
   }
   const auto [low, high] = scene.grid.range();
+  if (!scene.isosurfaces.empty()) {
+    const auto is_met = [low = low, high = high](const Isosurface& surface) {
+      return low < surface.s && surface.s < high;
+    };
+    if (std::any_of(scene.isosurfaces.begin(), scene.isosurfaces.end(), is_met)) return;
+    warnings.push_back(
+        fmt::format("no isosurface is crossed: the volume's values are {} to {}, the isosurfaces' {} to {}", low, high,
+                    scene.isosurfaces.front().s, scene.isosurfaces.back().s));
+    if (scene.transfer.points().size() == 1) return;
+  }
   const auto& points = scene.transfer.points();
   const double first = points.front().s;
   const double last = points.back().s;

@@ -11,6 +11,7 @@ struct PixelLight {
   Eigen::Array4d light = Eigen::Array4d::Zero();  ///< light in the first three numbers, opacity in the fourth
   double radius = 0;                              ///< of references only
   Status status = Status::converged;
+  bool has_unresolved_contact = false;  ///< with an isosurface
 };
 
 }  // namespace raytruth

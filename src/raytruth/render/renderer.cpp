@@ -114,6 +114,7 @@ Rendering Renderer::render(const std::function<void(std::size_t, std::size_t)>& 
 
   tbb::enumerable_thread_specific<PixelRenderer> renderers(parts_->make_renderer);
   std::atomic<std::int64_t> not_converged = 0;
+  std::atomic<std::int64_t> unresolved = 0;
   std::atomic<std::size_t> done = 0;
   std::mutex telling;
   tbb::parallel_for(std::int64_t{0}, tiles, [&](std::int64_t tile) {
@@ -126,12 +127,14 @@ Rendering Renderer::render(const std::function<void(std::size_t, std::size_t)>& 
         result.image.at(column, row) = pixel.light;
         if (has_radii) result.radii[static_cast<std::size_t>(row * width + column)] = pixel.radius;
         if (pixel.status != Status::converged) ++not_converged;
+        if (pixel.has_unresolved_contact) ++unresolved;
       }
     ++done;
     if (!progress) return;
     if (const std::unique_lock lock(telling, std::try_to_lock); lock) progress(done, static_cast<std::size_t>(tiles));
   });
   result.not_converged = not_converged;
+  if (!parts_->prepared.scene.isosurfaces.empty()) result.unresolved = unresolved;
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,8 @@ struct Rendering {
   bool covers_camera = false;      ///< the radii are for the rays that the camera means, not for rounded ones
   double tolerance = 0;            ///< what was asked for
   std::int64_t not_converged = 0;  ///< pixels whose radius is wider than that; it holds
+  /// Pixels of which it is not known how often their rays cross an isosurface; none: the scene has none.
+  std::optional<std::int64_t> unresolved = {};
 };
 
 /// Makes images of a scene: prepares it once, renders on all cores, the same bytes on any number of them.

@@ -11,6 +11,7 @@
 #include "raytruth/skipping/occupied_blocks.hpp"
 #include "raytruth/tables/look_up.hpp"
 #include "raytruth/transfer/emission.hpp"
+#include "raytruth/transfer/isosurface.hpp"
 #include "raytruth/transfer/piecewise_linear.hpp"
 #include "raytruth/volume/grid.hpp"
 
@@ -21,6 +22,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace raytruth {
 
@@ -83,6 +85,7 @@ struct Scene {
   /// Whether the radii of `reference` without shading are for the camera's rays as they are meant, not as CameraView
   /// rounds them. Schemes see rounded rays: what they are off by is told best for these.
   bool covers_camera = false;
+  std::vector<Isosurface> isosurfaces = {};  ///< beside the transfer function's matter
 };
 
 }  // namespace raytruth

@@ -301,6 +301,7 @@ PreciseChain<Degree> trace_precisely(const Grid& grid, Border border, const Ray&
       auto& piece = chain.pieces.emplace_back();
       const DoubleDouble length = (end - begin) * line.norm;
       piece.length = static_cast<double>(length);
+      piece.extent = length;
       piece.polynomial = exact(segment.cell);
       piece.error = SegmentVoxels::upwards * (voxels.error() + std::numeric_limits<double>::min());
       const DoubleDouble first = piece.polynomial.coefficients[0];

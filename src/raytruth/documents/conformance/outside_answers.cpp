@@ -123,6 +123,7 @@ void add_outside_answers(const Case& ray, bool runs_programs, Json& answer) {
     try {
       if (!runs_programs) throw OutsideRefusal(std::string(why_not_run));
       if (!ray.transfer) throw OutsideRefusal("the case states no transfer function");
+      if (!ray.isosurfaces.empty()) throw OutsideRefusal("vectors, which it reads, have no isosurfaces");
       its_answer = answer_of(program, ray, answer.at("reference"));
     } catch (const OutsideRefusal& refusal) {
       its_answer = refused(refusal.what());

@@ -323,7 +323,7 @@ std::vector<NamedMap> read_xml_maps(const std::filesystem::path& file) {
 bool is_transfer_file(const std::filesystem::path& file) {
   if (file.extension() != ".json") return true;
   const JsonReader document = JsonReader::from_lenient_file(file.string());
-  return !(document.is_object() && document.find("points"));
+  return !(document.is_object() && (document.find("points") || document.find("isosurfaces")));
 }
 
 std::vector<TransferListing> transfer_functions_in(const std::filesystem::path& file) {

@@ -19,11 +19,13 @@ extern const Technique second_order_table_pixels;
 extern const Technique shaded_pixels;
 extern const Technique shaded_reference_pixels;
 extern const Technique shaded_table_pixels;
+extern const Technique surface_pixels;
 extern const Technique table_march_pixels;
 extern const Technique table_pixels;
 
 std::span<const Technique* const> techniques() {
   static constexpr std::array list{
+      &surface_pixels,
       &shaded_reference_pixels,
       &reference_pixels,
       &quadratic_gray_table_pixels,

@@ -1,0 +1,105 @@
+#include "raytruth/schemes/surface_method.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace raytruth {
+
+namespace {
+
+/// How many of the surfaces a scalar is at or above.
+std::size_t class_of(double s, const std::vector<double>& scalars) {
+  return static_cast<std::size_t>(std::upper_bound(scalars.begin(), scalars.end(), s) - scalars.begin());
+}
+
+/// Where the line between two samples passes a scalar.
+double place_on_line(const Samples<double>& samples, std::size_t interval, double scalar) {
+  const double front = samples.values[interval];
+  const double share = (scalar - front) / (samples.values[interval + 1] - front);
+  return static_cast<double>(samples.positions[interval]) + share * samples.length_of(interval);
+}
+
+/// Where the signal passes it, by three steps of regula falsi.
+template <int Degree>
+double place_on_signal(const Chain<Degree>& signal, const Samples<double>& samples, std::size_t interval,
+                       double scalar) {
+  constexpr int steps = 3;
+  auto low = static_cast<double>(samples.positions[interval]);
+  auto high = static_cast<double>(samples.positions[interval + 1]);
+  double at_low = samples.values[interval] - scalar;
+  double at_high = samples.values[interval + 1] - scalar;
+  double place = low;
+  for (int step = 0; step < steps && at_low != at_high; ++step) {
+    place = low - at_low * (high - low) / (at_high - at_low);
+    const double here = signal.value(DoubleDouble(place)) - scalar;
+    if ((here < 0) == (at_low < 0)) {
+      low = place;
+      at_low = here;
+    } else {
+      high = place;
+      at_high = here;
+    }
+  }
+  return place;
+}
+
+/// The state moves by one value at each sample, towards the class that the sample has.
+std::vector<SampledHit> one_per_step(const Samples<double>& samples, const std::vector<double>& scalars) {
+  std::vector<SampledHit> hits;
+  if (samples.values.empty()) return hits;
+  std::size_t state = class_of(samples.values.front(), scalars);
+  for (std::size_t i = 1; i < samples.values.size(); ++i) {
+    const std::size_t target = class_of(samples.values[i], scalars);
+    if (target == state) continue;
+    const std::size_t surface = target > state ? state : state - 1;
+    const auto t = static_cast<double>(samples.positions[i]);
+    hits.push_back({t, surface, i - 1, t});
+    state = target > state ? state + 1 : state - 1;
+  }
+  return hits;
+}
+
+std::vector<SampledHit> near_samples(const Samples<double>& samples, const std::vector<double>& scalars,
+                                     double tolerance) {
+  std::vector<SampledHit> hits;
+  for (std::size_t i = 0; i < samples.values.size(); ++i)
+    for (std::size_t surface = 0; surface < scalars.size(); ++surface) {
+      if (!(std::abs(samples.values[i] - scalars[surface]) < tolerance)) continue;
+      const auto t = static_cast<double>(samples.positions[i]);
+      hits.push_back({t, surface, i, t});
+    }
+  return hits;
+}
+
+}  // namespace
+
+template <int Degree>
+std::vector<SampledHit> sampled_hits(SurfaceMethod method, const Chain<Degree>& signal, const Samples<double>& samples,
+                                     const std::vector<double>& scalars, double tolerance) {
+  if (method == SurfaceMethod::one_per_step) return one_per_step(samples, scalars);
+  if (method == SurfaceMethod::threshold) return near_samples(samples, scalars, tolerance);
+  const bool is_one = method == SurfaceMethod::nearest_only || method == SurfaceMethod::peak_finding;
+  std::vector<SampledHit> hits;
+  for (std::size_t interval = 0; interval < samples.interval_count(); ++interval) {
+    const std::size_t front = class_of(samples.values[interval], scalars);
+    const std::size_t back = class_of(samples.values[interval + 1], scalars);
+    const std::size_t passed = front < back ? back - front : front - back;
+    const std::size_t first = hits.size();
+    for (std::size_t i = 0; i < (is_one ? std::min<std::size_t>(passed, 1) : passed); ++i) {
+      const std::size_t surface = front < back ? front + i : front - 1 - i;
+      const double t = method == SurfaceMethod::peak_finding
+                           ? place_on_signal(signal, samples, interval, scalars[surface])
+                           : place_on_line(samples, interval, scalars[surface]);
+      const bool shares_normal = method == SurfaceMethod::nearest_normal && i > 0;
+      hits.push_back({t, surface, interval, shares_normal ? hits[first].t : t});
+    }
+  }
+  return hits;
+}
+
+template std::vector<SampledHit> sampled_hits(SurfaceMethod, const Chain<3>&, const Samples<double>&,
+                                              const std::vector<double>&, double);
+template std::vector<SampledHit> sampled_hits(SurfaceMethod, const Chain<largest_degree>&, const Samples<double>&,
+                                              const std::vector<double>&, double);
+
+}  // namespace raytruth
