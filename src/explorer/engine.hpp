@@ -13,7 +13,7 @@ const char* explorer_schemes();
 /// trilinearly. `ray`: origin and direction in voxels, and the length. Gives {"length"}, of what of it is inside.
 const char* explorer_trilinear(const int* size, const double* voxels, const double* ray);
 
-/// The same through the Marschner-Lobb signal sampled at `samples`^3 nodes.
+/// The signal becomes that of a ray through the Marschner-Lobb signal, sampled at `samples`^3 nodes and interpolated.
 const char* explorer_marschner_lobb(int samples, const double* ray);
 
 /// The signal becomes a polynomial on each of `pieces` intervals: `breaks` are one more, and each piece has `count`
