@@ -21,6 +21,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kind_of(ErrorKind kind) { return error_kind_names[static_cast<std::size_t>(kind)]; }
 
+/// Fewer rays that see anything are too few to tell what keeps an error.
+constexpr std::int64_t few_rays = 64;
+
 std::string_view words_of(ErrorKind kind) {
   constexpr std::array<std::string_view, 3> words{"RMSE of colours", "largest error of a colour",
                                                   "largest error of a colour encoded as sRGB"};
@@ -174,6 +177,7 @@ Json advice_result(const AdviceDocument& asked, const Advice& advice) {
             {advice.best ? "next_cheaper" : "closest", way_json(advice.ways, advice.next_cheaper)},
             {"settled", advice.is_settled},
             {"rays", advice.rays},
+            {"rays_with_matter", advice.rays_with_matter},
             {"pixels", advice.pixels},
             {"truth", {{"certified", advice.is_certified}, {"radius_max", advice.truth_radius}}},
             {"volume", asked.volume},
@@ -201,7 +205,11 @@ std::string advice_text(const AdviceDocument& asked, const Advice& advice) {
   else
     text += "take            nothing that was tried keeps it: ask for a larger error, or see what comes closest\n";
   if (advice.next_cheaper) text += line(advice.best ? "next cheaper" : "closest", advice.ways[*advice.next_cheaper]);
-  if (!advice.is_settled) text += "not settled     a cheaper way may keep it too: --rays allows more to be looked at\n";
+  if (!advice.best && advice.rays_with_matter < few_rays)
+    text += fmt::format("too little seen {} of the pixels that were looked at see anything: --rays allows more\n",
+                        advice.rays_with_matter);
+  else if (!advice.is_settled)
+    text += "not settled     a cheaper way may keep it too: --rays allows more to be looked at\n";
 
   text += fmt::format("\n{:>9}  {:>9}  {:>9}  {:<10}  {}\n", "reads", "error", "at most", "standing", "way");
   double least = std::numeric_limits<double>::infinity();

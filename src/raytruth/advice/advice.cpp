@@ -29,6 +29,9 @@ constexpr std::array sampled_schemes{"riemann_mid", "trapezoid", "simpson", "sam
 constexpr std::array table_format_words{"unorm8", "float16", "float32"};
 constexpr std::int64_t first_rays = 512;
 constexpr std::int64_t few_pixels = 4096;  // all of which are looked at
+// So many rays that see something tell a mean; fewer than the second number may have missed what errs.
+constexpr std::int64_t enough_matter = 256;
+constexpr std::int64_t least_matter = 64;
 // Tables are tried at so many steps, the longest of those at which exact slabs keep the error, or nearly.
 constexpr std::size_t steps_with_tables = 2;
 constexpr double nearly = 1.25;
@@ -207,7 +210,7 @@ class Search {
     std::int64_t count = first_rays;
     for (std::uint32_t round = 0;; ++round) {
       look_at(rays_of_round(request_, count, round), round == 0);
-      if (advice_.rays >= request_.most_rays || !is_open()) break;
+      if (advice_.rays >= request_.most_rays || (!is_open() && has_seen_enough())) break;
       count = std::min(advice_.rays, request_.most_rays - advice_.rays);
     }
     return conclude();
@@ -285,7 +288,10 @@ class Search {
     if (is_first && std::none_of(rays.begin(), rays.end(), [this](const PixelRay& ray) { return meets(ray); }))
       throw InputError("no pixel of the views sees the volume; a scene without a camera gets views that do");
     advice_.rays += static_cast<std::int64_t>(rays.size());
-    for (const PixelLight& light : truth) advice_.truth_radius = std::max(advice_.truth_radius, light.radius);
+    for (const PixelLight& pixel : truth) {
+      advice_.truth_radius = std::max(advice_.truth_radius, pixel.radius);
+      if ((pixel.light != 0).any()) ++advice_.rays_with_matter;
+    }
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
       Candidate& candidate = candidates_[i];
       if (is_first) count_reads(candidate.way, false, request_.scene, rays);
@@ -316,9 +322,10 @@ class Search {
                 : request_.kind == ErrorKind::rmse
                     ? rmse_of_sample(candidate.errors, request_.confidence)
                     : largest_of_sample(candidate.errors, static_cast<double>(advice_.pixels), request_.confidence);
-    way.standing = way.error.high <= request_.error ? Standing::keeps
-                   : way.error.low > request_.error ? Standing::exceeds
-                                                    : Standing::undecided;
+    const bool may_promise = has_all_ || advice_.rays_with_matter >= least_matter;
+    way.standing = may_promise && way.error.high <= request_.error ? Standing::keeps
+                   : way.error.low > request_.error                ? Standing::exceeds
+                                                                   : Standing::undecided;
   }
 
   void choose() {
@@ -334,6 +341,11 @@ class Search {
     if (!candidate.way.refusal.empty()) return false;
     if (&candidate == best_) return true;
     return candidate.way.standing == Standing::undecided && (best_ == nullptr || is_cheaper(candidate.way, best_->way));
+  }
+
+  /// Whether the sample may be taken for the image.
+  [[nodiscard]] bool has_seen_enough() const {
+    return request_.kind == ErrorKind::rmse && advice_.rays_with_matter >= enough_matter;
   }
 
   [[nodiscard]] bool is_open() const {

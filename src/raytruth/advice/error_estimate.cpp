@@ -77,7 +77,9 @@ ErrorEstimate largest_of_sample(std::vector<double> errors, double population, d
     return errors[k] +
            std::max(errors[k] * tail.mean_log * (1 - std::min(tail.index, 0.0)) * growth, tail.mean_excess * beyond);
   };
-  return {std::max(seen, extreme(1)), seen, std::max(least, extreme(1 - confidence))};
+  // The tail of an image is none that is known: what one part of it does, another part may not tell.
+  constexpr double unknown_tail = 1.5;
+  return {std::max(seen, extreme(1)), seen, unknown_tail * std::max(least, extreme(1 - confidence))};
 }
 
 }  // namespace raytruth

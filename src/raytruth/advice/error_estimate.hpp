@@ -38,9 +38,9 @@ ErrorEstimate rmse_of_sample(const std::vector<double>& squares, double confiden
 ///     x(p) = x_k + x_k M1 (1 - min(g, 0)) ((k / (n p))^g - 1) / g
 /// is exceeded with the probability p. An index that comes out too small makes this too near, so what an exponential
 /// tail exceeds with that probability, x_k + ln(k / (n p)) times the mean of x_i - x_k, is taken where it is larger.
-/// `value` is x(1 / population); `high` is x((1 - confidence) / population), which the largest one exceeds with the
-/// probability 1 - confidence if the tail is what it is taken for. `low` is the largest error of the sample, which is
-/// certain.
+/// `value` is x(1 / population); `high` is half as much again as x((1 - confidence) / population), which the largest
+/// one exceeds with the probability 1 - confidence if the tail is what it is taken for. `low` is the largest error of
+/// the sample, which is certain.
 ErrorEstimate largest_of_sample(std::vector<double> errors, double population, double confidence);
 
 }  // namespace raytruth
