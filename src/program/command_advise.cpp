@@ -92,7 +92,7 @@ const Command advise_command{
         "table's bytes. Steps are in smallest spacings, errors those of colours in linear light.\n"
         "\n"
         "`invisible`: no colour, encoded as sRGB, is off by more than half a step of 8 bits. The largest error of all\n"
-        "pixels is estimated by the tail of those that were looked at.\n"
+        "pixels is estimated by the tail of those that were looked at: edges that none of them met may exceed it.\n"
         "\n"
         "Ends with 1 where nothing that was tried keeps the error.",
     .describe = describe};
