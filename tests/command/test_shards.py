@@ -181,6 +181,16 @@ class Merging(ShardTest):
         self.assert_merge_refused("study.1-of-2.part: /experiment: in/small.json: /transfer_functions/1/transfer_function", "t.xml")
 
 
+class Places(ShardTest):
+    def test_a_name_without_extension_is_a_folder(self):
+        self.shards(1)
+        for _ in range(2):  # made first, and then there
+            self.output_of("merge", "parts", "-o", "out", "--without-times")
+            self.assertEqual((self.folder / "out/small.json").read_text(), self.whole())
+        self.output_of("merge", "parts", "-o", "out.json", "--without-times")
+        self.assertEqual((self.folder / "out.json").read_text(), self.whole())
+
+
 class Missing(ShardTest):
     def test_missing_units_are_named_with_the_command_that_makes_them(self):
         (self.folder / "a b").mkdir()
