@@ -2,6 +2,7 @@
 
 #include "experiments/columns.hpp"
 #include "experiments/result.hpp"
+#include "raytruth/documents/camera_json.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -99,16 +100,6 @@ Columns<Way> way_columns() {
 
 Json way_json(const std::vector<Way>& ways, std::optional<std::size_t> which) {
   return which ? to_json(row_of(way_columns(), ways[*which])) : Json();
-}
-
-Json camera_json(const Camera& camera) {
-  Json json{{"eye", camera.eye}, {"target", camera.target}, {"up", camera.up}};
-  if (const auto* const perspective = std::get_if<Perspective>(&camera.projection))
-    json["fov_y"] = perspective->fov_y;
-  else
-    json["height"] = std::get<Orthographic>(camera.projection).height;
-  json["size"] = camera.size;
-  return json;
 }
 
 /// A curve for each method, without the ways that are refused, and the error that is asked for.
