@@ -48,6 +48,15 @@ class AdviseTest(ProgramTest):
         self.assertLess(cheap["reads"], dear["reads"])
         self.assert_promise_holds(self.advise("--error", "0.005", "--of", "largest"), lambda difference: numpy.abs(difference).max())
 
+    def test_the_largest_error_is_found_though_few_pixels_are_looked_at(self):
+        camera = {**SCENE["camera"], "size": [160, 128]}
+        scene = {**SCENE, "camera": camera}
+        advice = self.advise("--error", "0.01", "--of", "largest", "--rays", "4096", scene=scene)["advice"]
+        self.assertLess(advice["rays"], advice["pixels"] / 4)
+        best = advice["best"]
+        difference = self.image(camera=camera, scheme=best["scheme"], step=best["step"]) - self.image(camera=camera, scheme="reference")
+        self.assertAlmostEqual(numpy.abs(difference).max(), best["error_low"], delta=1e-12)
+
     def test_the_best_is_the_cheapest_that_keeps_the_error(self):
         result = self.advise("--error", "0.002")
         advice = result["advice"]

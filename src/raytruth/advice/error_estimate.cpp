@@ -82,4 +82,9 @@ ErrorEstimate largest_of_sample(std::vector<double> errors, double population, d
   return {std::max(seen, extreme(1)), seen, unknown_tail * std::max(least, extreme(1 - confidence))};
 }
 
+ErrorEstimate and_at_least(ErrorEstimate estimate, double found) {
+  constexpr double margin = 1.1;
+  return {std::max(estimate.value, found), std::max(estimate.low, found), std::max(estimate.high, margin * found)};
+}
+
 }  // namespace raytruth

@@ -43,4 +43,8 @@ ErrorEstimate rmse_of_sample(const std::vector<double>& squares, double confiden
 /// the sample, which is certain.
 ErrorEstimate largest_of_sample(std::vector<double> errors, double population, double confidence);
 
+/// The estimate of a largest error of which one as large as `found` was found by a search uphill, not by chance. What
+/// such a search has not found is taken to be no more than a tenth larger.
+ErrorEstimate and_at_least(ErrorEstimate estimate, double found);
+
 }  // namespace raytruth

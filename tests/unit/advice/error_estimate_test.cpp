@@ -74,5 +74,17 @@ TEST(ErrorEstimate, TheLargestOfAPopulationIsSeldomBeyondItsBound) {
   EXPECT_GE(check(heavy), 85);
 }
 
+TEST(ErrorEstimate, WhatASearchFoundIsCertain) {
+  const ErrorEstimate larger = and_at_least({.value = 1, .low = 0.5, .high = 3}, 2);
+  EXPECT_EQ(larger.value, 2);
+  EXPECT_EQ(larger.low, 2);
+  EXPECT_EQ(larger.high, 3);
+  EXPECT_GT(and_at_least({.value = 1, .low = 0.5, .high = 3}, 3).high, 3);
+  const ErrorEstimate smaller = and_at_least({.value = 1, .low = 0.5, .high = 3}, 0.25);
+  EXPECT_EQ(smaller.low, 0.5);
+  EXPECT_EQ(smaller.value, 1);
+  EXPECT_EQ(smaller.high, 3);
+}
+
 }  // namespace
 }  // namespace raytruth
