@@ -12,6 +12,7 @@ import math
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from fractions import Fraction
 
@@ -61,7 +62,7 @@ def certified(values, count):
     case = {
         "signal": {
             "kind": "tetrahedra",
-            "volume": {"size": SIZE, "values": [float(x) for x in values.ravel()]},
+            "volume": "values.npy",
             "split": 5,
             "origin": ORIGIN,
             "direction": DIRECTION,
@@ -69,11 +70,12 @@ def certified(values, count):
         "transfer_function": {"points": [{"s": s, "extinction": e, "color": c} for s, e, c in POINTS]},
         "schemes": ["reference"],
     }
-    begin = time.perf_counter()
-    done = subprocess.run(
-        [os.environ.get("RAYTRUTH", "raytruth"), "eval", "-"], input=json.dumps([case] * count).encode(), stdout=subprocess.PIPE, check=True
-    )
-    return json.loads(done.stdout)[0], time.perf_counter() - begin
+    program = os.path.abspath(os.environ.get("RAYTRUTH", "raytruth")) if os.sep in os.environ.get("RAYTRUTH", "") else "raytruth"
+    with tempfile.TemporaryDirectory() as folder:
+        numpy.save(os.path.join(folder, "values.npy"), values)
+        begin = time.perf_counter()
+        done = subprocess.run([program, "eval", "-"], input=json.dumps([case] * count).encode(), stdout=subprocess.PIPE, cwd=folder, check=True)
+        return json.loads(done.stdout)[0], time.perf_counter() - begin
 
 
 def array(numbers):

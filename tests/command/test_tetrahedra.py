@@ -2,6 +2,7 @@
 
 import importlib.util
 import itertools
+import json
 import math
 import random
 import unittest
@@ -247,6 +248,46 @@ class Rays(ProgramTest):
             with self.subTest(expected):
                 self.write(name, text)
                 self.assert_refused(self.run_program("info", name), name, *expected)
+
+
+class Studies(ProgramTest):
+    def rows(self, measure):
+        experiment = {"raytruth": "experiment/1", "name": "study", "question": "Does it agree?", "source": "none", "seed": 1, "measures": [measure]}
+        self.output_of("run", self.write("study.json", experiment), "-o", "out")
+        result = json.loads((self.folder / "out" / "study.json").read_text())
+        return result["rows"]
+
+    def test_a_cell_whose_picture_has_closed_forms(self):
+        size = 16
+        rows = self.rows({"kind": "projected_tetrahedra", "meshes": ["cross", "sheared"], "extinctions": [4], "size": size})
+        of = {(row["mesh"], row["projection"], row["rule"], row["order"]): row for row in rows}
+        # The scalar is 1/2 + x/8 + y/8 - 3 z/4, and the cell reaches from |x| - 1/2 to 1/2 - |y|.
+        worst = 0
+        places = [(2 * i + 1) / size - 1 for i in range(size)]
+        for x, y in itertools.product(places, places):
+            length = 1 - abs(x) - abs(y)
+            if length > 0:
+                depth = 4 * length * (0.5 + (x + y) / 8 - 0.375 * (abs(x) - abs(y)))
+                worst = max(worst, abs(math.expm1(-depth) - length * math.expm1(-2)))
+        row = of["cross", "parallel", "projected_opacity", "exact"]
+        self.assertAlmostEqual(row["opacity_error_max"], worst, delta=1e-13)
+        self.assertLess(of["cross", "parallel", "projected_exponential", "exact"]["opacity_error_max"], 1e-13)
+        self.assertLess(of["sheared", "parallel", "projected_table", "exact"]["error_max"], 1e-12)
+        self.assertGreater(of["sheared", "parallel", "projected_table", "centre"]["error_max"], 1e-3)
+
+    def test_costs_are_those_of_a_count(self):
+        measure = {"kind": "cell_tables", "shapes": ["ramp"], "optical_depths": [2], "sizes": [9], "distances": [5, 9], "counted_sizes": [16], "look_ups": 32}
+        rows = self.rows(measure)
+        costs = {(row["part"], row["builder"]): row for row in rows if row["part"] != "look_up"}
+        composites = 16 * sum(abs(i - j) - 1 for i in range(16) for j in range(16) if i != j)
+        self.assertEqual(costs["cost", "brute_force"]["composites"], composites)
+        self.assertEqual(costs["cost_of_distances", "subrange"]["order_composites"], 1)
+        look_ups = {(row["distance_axis"], row["distances"]): row for row in rows if row["part"] == "look_up"}
+        # The mean of a ramp is linear in both scalars, so that nothing is left of the opacity's error.
+        for count in (5, 9):
+            self.assertLess(look_ups["mean_depth", count]["opacity_error"], 1e-14)
+            self.assertGreater(look_ups["uniform", count]["opacity_error"], 1e-4)
+        self.assertEqual(look_ups["uniform", 5]["bytes_float32"], 4 * 9 * 9 * 4 * 4)
 
 
 POINT_LINES = "\n".join(" ".join(map(str, point)) for point in POINTS) + "\n"

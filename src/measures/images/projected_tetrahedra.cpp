@@ -22,7 +22,7 @@ namespace {
 
 using Vec4 = Rules<double>::vec4;
 
-constexpr std::array<std::string_view, 3> mesh_names{"cross", "spire", "grid"};
+constexpr std::array<std::string_view, 4> mesh_names{"cross", "spire", "grid", "sheared"};
 constexpr std::int64_t grid_side = 5;
 constexpr std::size_t table_size = 64;
 constexpr std::size_t table_distances = 17;
@@ -47,13 +47,19 @@ Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
 /// A cell by itself, or a grid of random scalars in [0, 1] between -1 and 1 split into five.
 TetrahedralField mesh_named(std::string_view name, std::uint64_t seed) {
   TetrahedralMesh mesh;
-  if (name == "grid") {
+  if (name == "grid" || name == "sheared") {
     Grid grid{.size = {grid_side, grid_side, grid_side}, .spacing = {1, 1, 1}, .values = {}};
     for (std::uint64_t i = 0; i < grid_side * grid_side * grid_side; ++i)
       grid.values.push_back(random_numbers(seed, RandomStream::field, i)[0]);
     mesh = split_grid(grid, GridSplit::five);
     for (auto& point : mesh.points)
       for (double& x : point) x = x / 2 - 1;
+    if (name == "sheared")
+      for (auto& [x, y, z] : mesh.points) {
+        x += 3 * z;
+        y += 2 * z;
+        z /= 2;
+      }
     return TetrahedralField(std::move(mesh));
   }
   if (name == "cross")
@@ -133,13 +139,13 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
         const ProjectedView view{.is_perspective = is_perspective, .height = 4, .half_side = 1, .size = options.size};
         const PiecewiseLinear transfer = ramp(extinction);
         const Truth truth = truth_of(field, view, transfer);
-        const double longest = name == "grid" ? 1 : 2;
+        const double longest = name == "cross" || name == "spire" ? 2 : 1;
         const CellTable table = exact_cell_table(
             transfer, {.size = table_size, .low = 0, .high = 1, .length = 1}, Emission::associated,
             CellTableAxis::mean_depth, cell_table_distances(CellTableAxis::mean_depth, table_distances, longest));
         for (std::size_t rule = 0; rule <= projection_rule_names.size(); ++rule)
           for (const CellOrder order : {CellOrder::exact, CellOrder::centre}) {
-            if (order == CellOrder::centre && name != "grid") continue;
+            if (order == CellOrder::centre && (name == "cross" || name == "spire")) continue;
             const bool is_looked_up = rule == projection_rule_names.size();
             RayIntegral integrate(transfer, Emission::associated);
             const CellSlab slab = [&](double front, double back, double length) -> Vec4 {
@@ -175,7 +181,7 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
       {.name = "mesh",
        .description =
            "cross, spire: one cell, whose outline is a quadrilateral or a triangle; grid: 5^3 random scalars, "
-           "split into five",
+           "split into five; sheared: the same, each layer beside the one before",
        .is_key = true,
        .cell = &Record::mesh},
       {.name = "projection",

@@ -154,13 +154,14 @@ void add_costs(const Options& options, std::vector<Record>& records) {
   };
   for (const Row& row : {Row{"brute_force", brute_force_cell_table_cost}, Row{"subrange", subrange_cell_table_cost}})
     for (const std::int64_t size : options.counted_sizes)
-      for (const std::int64_t distances : {size, size / 2}) {
-        Record record{.part = "cost", .keys = {"", 0, static_cast<std::size_t>(size)}, .axis = {}};
+      for (const bool is_half : {false, true}) {
+        // Half the scalars and half the distances, or the same scalars and half the distances.
+        const std::int64_t distances = size;
+        Record record{.part = is_half ? "cost_of_distances" : "cost", .keys = {"", 0, static_cast<std::size_t>(size)}};
         record.distances = distances;
         record.builder = row.name;
         record.cost = row.cost(size, distances);
-        const bool is_half = distances != size;
-        const TableCost smaller = is_half ? row.cost(size, distances / 2) : row.cost(size / 2, distances / 2);
+        const TableCost smaller = row.cost(is_half ? size : size / 2, distances / 2);
         record.order = std::log2(static_cast<double>(record.cost.composites) / static_cast<double>(smaller.composites));
         records.push_back(record);
       }
@@ -171,11 +172,13 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
     return [value](const Record& record) { return cell_if(record.part == "look_up", value(record)); };
   };
   const auto of_cost = [](auto value) {
-    return [value](const Record& record) { return cell_if(record.part == "cost", value(record)); };
+    return [value](const Record& record) { return cell_if(record.part != "look_up", value(record)); };
   };
   return {
       {.name = "part",
-       .description = "look_up: in a table with exact entries; cost: what a table takes, counted",
+       .description =
+           "look_up: in a table with exact entries; cost: what a table takes, counted, with as many distances as "
+           "scalars; cost_of_distances: the same beside half the distances",
        .is_key = true,
        .cell = &Record::part},
       {.name = "shape",
@@ -198,7 +201,8 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
        .description =
            "uniform: 0 to sqrt(3) in equal steps; powers_of_two: 0, then each twice the one before up to "
            "sqrt(3); both linear in D. powers_of_two_log: linear in log D behind the first. printed: 0, then "
-           "2^-7 to 2, linear. mean_depth: opacity without distances, colour over opacity linear in log D",
+           "2^-7 to 2, linear. mean_depth: as uniform, but "
+           "opacity without distances, and colour over opacity linear in D",
        .is_key = true,
        .cell = of_look_up([](const Record& record) { return record.axis; })},
       {.name = "distances",
@@ -243,8 +247,8 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
                                                                        return record.cost.exponentials;
                                                                      })},
       {.name = "order_composites",
-       .description = "log2 of composites over those of half the distances and, where there are as many distances as "
-                      "scalars, half the scalars",
+       .description =
+           "log2 of composites over those of half the scalars and half the distances, or of half the distances alone",
        .cell = of_cost([](const Record& record) { return record.order; })},
   };
 }

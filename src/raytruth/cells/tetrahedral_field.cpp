@@ -213,7 +213,36 @@ struct Stretch {
   bool is_cut = false;  ///< begins at the ray's origin, inside the cell
 };
 
+/// Whether the line certainly passes by: all other corners are on one side of the plane through it and some corner.
+bool passes_by(const Line& line, const TetrahedralMesh& mesh, std::uint32_t cell) {
+  constexpr double rounding = 0x1p-48;  // of binary64, of what the corners' differences and six products come to
+  std::array<Point, 4> corners{};
+  for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      corners[k][axis] = mesh.points[mesh.tetrahedra[cell][k]][axis] - line.origin[axis];
+  std::array<int, 4> left{};
+  std::array<int, 4> right{};
+  for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t b = a + 1; b < 4; ++b) {
+      double side = 0;
+      double magnitude = 0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double p = corners[a][(i + 1) % 3] * corners[b][(i + 2) % 3];
+        const double q = corners[a][(i + 2) % 3] * corners[b][(i + 1) % 3];
+        side += line.direction[i] * (p - q);
+        magnitude += std::abs(line.direction[i]) * (std::abs(p) + std::abs(q));
+      }
+      if (std::abs(side) <= rounding * magnitude + 0x1p-900) continue;
+      ++(side > 0 ? left : right)[a];
+      ++(side > 0 ? right : left)[b];
+    }
+  for (std::size_t a = 0; a < 4; ++a)
+    if (left[a] == 3 || right[a] == 3) return true;
+  return false;
+}
+
 std::optional<Stretch> stretch_of(const Line& line, const TetrahedralMesh& mesh, std::uint32_t cell) {
+  if (passes_by(line, mesh, cell)) return {};
   std::array<Corner, 4> corners;
   for (std::size_t k = 0; k < 4; ++k) corners[k] = corner_of(line, mesh, mesh.tetrahedra[cell][k]);
   std::array<std::array<Side, 4>, 4> sides;

@@ -46,11 +46,12 @@ std::vector<double> cell_table_distances(CellTableAxis axis, std::size_t count, 
   if (count < 2) throw InputError(fmt::format("found {} distances; at least 2 are allowed", count));
   std::vector<double> distances{0};
   const auto last = static_cast<int>(count) - 1;
+  const bool is_uniform = axis == CellTableAxis::uniform || axis == CellTableAxis::mean_depth;
   if (axis == CellTableAxis::printed) {
     for (int j = -7; j <= 1; ++j) distances.push_back(std::ldexp(1.0, j));
   } else {
     for (int i = 1; i <= last; ++i)
-      distances.push_back(axis == CellTableAxis::uniform ? longest * i / last : std::ldexp(longest, i - last));
+      distances.push_back(is_uniform ? longest * i / last : std::ldexp(longest, i - last));
   }
   return distances;
 }
@@ -79,8 +80,7 @@ Vec4 look_up(const CellTable& table, double front, double back, double length) {
       std::upper_bound(distances.begin(), distances.end(), within) - distances.begin(), 1, std::ssize(distances) - 1));
   const double low = distances[above - 1];
   const double high = distances[above];
-  const bool is_in_logarithm =
-      low > 0 && (table.axis == CellTableAxis::powers_of_two_log || table.axis == CellTableAxis::mean_depth);
+  const bool is_in_logarithm = low > 0 && table.axis == CellTableAxis::powers_of_two_log;
   const double share = is_in_logarithm ? std::log(within / low) / std::log(high / low) : (within - low) / (high - low);
   const Vec4 first = slice_at(table, above - 1, front, back);
   const Vec4 second = slice_at(table, above, front, back);

@@ -18,7 +18,7 @@ enum class CellTableAxis {
   uniform,            ///< 0 to the longest in equal steps, linear between them
   powers_of_two,      ///< 0, then each twice the one before up to the longest, linear between them
   powers_of_two_log,  ///< the same, linear in log D; from 0 to the first one in D
-  mean_depth,         ///< the same; opacity is 1 - exp(-D m), and colour over opacity is linear in log D
+  mean_depth,         ///< as uniform; opacity is 1 - exp(-D m), and colour over opacity is linear in D
   printed,            ///< 0, then 2^j for j = -7 to 1, linear between them (the dissertation, section 5.2.5)
 };
 
