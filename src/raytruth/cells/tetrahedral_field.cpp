@@ -108,7 +108,7 @@ struct Side {
   [[nodiscard]] Side reversed() const { return {{-value.value, value.error}, -sign}; }
 };
 
-/// The same number whichever way round the edge is asked for.
+/// It has one number whichever way round the edge is asked for.
 Side side_of(const Line& line, const Corner& a, const Corner& b) {
   if (a.place > b.place) return side_of(line, b, a).reversed();
   const Vector106 direction{line.direction[0], line.direction[1], line.direction[2]};
@@ -517,7 +517,7 @@ MeshRay TetrahedralField::trace(const Ray& ray) const {
     piece.length = static_cast<double>(length);
     piece.extent = length;
     auto [begin, begin_error] = scalar_at(mesh_, stretch.cell, stretch.in);
-    // The same scalar was found through another face, where the ray passes an edge or a point.
+    // Where the ray passes an edge or a point, this scalar was found through another face before.
     const double apart = is_head ? HUGE_VAL : std::abs(static_cast<double>(begin - last_scalar));
     if (apart <= begin_error + last_error) {
       begin = last_scalar;
