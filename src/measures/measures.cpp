@@ -6,6 +6,8 @@ namespace raytruth {
 
 extern const Measure advise_holds_measure;
 extern const Measure cell_cubic_measure;
+extern const Measure cell_tables_measure;
+extern const Measure cells_against_grid_measure;
 extern const Measure clamps_measure;
 extern const Measure cone_lobe_measure;
 extern const Measure conformance_measure;
@@ -34,6 +36,7 @@ extern const Measure orders_measure;
 extern const Measure partial_pre_integration_measure;
 extern const Measure paper_identities_measure;
 extern const Measure printed_figures_measure;
+extern const Measure projected_tetrahedra_measure;
 extern const Measure quadratic_gray_fit_measure;
 extern const Measure quadratic_r_axis_measure;
 extern const Measure quadratic_simpson_measure;
@@ -107,6 +110,9 @@ std::span<const Measure* const> measures() {
       &table_formats_measure,
       &second_order_table_measure,
       &second_order_distance_measure,
+      &cell_tables_measure,
+      &projected_tetrahedra_measure,
+      &cells_against_grid_measure,
       &partial_pre_integration_measure,
       &table_pareto_measure,
       &images_measure,

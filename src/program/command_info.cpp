@@ -1,5 +1,8 @@
 #include "experiments/output.hpp"
 #include "program/command.hpp"
+#include "raytruth/core/error.hpp"
+#include "raytruth/core/one_line.hpp"
+#include "raytruth/documents/mesh_files/mesh_file.hpp"
 #include "raytruth/documents/volume_source.hpp"
 #include "raytruth/volume/files/describe_volume.hpp"
 #include "raytruth/volume/files/find_volume.hpp"
@@ -8,6 +11,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <utility>
 
 namespace raytruth {
 
@@ -74,8 +82,55 @@ std::string description_text(const VolumeDescription& volume) {
   return text;
 }
 
+/// The least and the greatest of its scalars.
+std::pair<double, double> range_of(const TetrahedralMesh& mesh) {
+  const auto& scalars = mesh.scalars.empty() ? mesh.cell_scalars : mesh.scalars;
+  const auto [low, high] = std::minmax_element(scalars.begin(), scalars.end());
+  return {*low, *high};
+}
+
+Json mesh_json(const MeshFile& file, const std::string& name) {
+  const auto [low, high] = range_of(file.mesh);
+  Json json{{"file", name}, {"format", file.format}, {"points", file.mesh.points.size()}};
+  json["cells"] = file.mesh.tetrahedra.size();
+  json["array"] = file.array;
+  json["scalars_of"] = file.is_of_cells ? "cells" : "points";
+  json["arrays"] = file.arrays;
+  json["minimum"] = low;
+  json["maximum"] = high;
+  json["warnings"] = file.warnings;
+  return json;
+}
+
+std::string mesh_text(const MeshFile& file, const std::string& name) {
+  const auto [low, high] = range_of(file.mesh);
+  std::string text;
+  const auto line = [&text](std::string_view what, const std::string& value) {
+    text += fmt::format("{:<16}  {}\n", what, value);
+  };
+  line("file", name);
+  line("format", file.format + ", ASCII");
+  line("cells", fmt::format("{} tetrahedra", file.mesh.tetrahedra.size()));
+  line("points", fmt::format("{}", file.mesh.points.size()));
+  line("scalars", one_line(fmt::format("{}, {}", file.array,
+                                       file.is_of_cells ? "constant in each cell" : "of points, linear in each cell")));
+  line("arrays", one_line(fmt::format("{}", fmt::join(file.arrays, ", "))));
+  line("range", fmt::format("{} .. {}", low, high));
+  return text;
+}
+
+int show_mesh(const InfoOptions& options, const std::filesystem::path& path) {
+  if (options.time_step) throw InputError("--time-step: found it with a mesh; one with a series of volumes is allowed");
+  if (!options.spacing.empty()) throw InputError("--spacing: found it with a mesh; one with voxels is allowed");
+  const MeshFile file = read_mesh(path);
+  for (const std::string& warning : file.warnings) say(fmt::format("warning: {}: {}", path.string(), warning));
+  print(options.json ? mesh_json(file, path.string()).dump(2) + "\n" : mesh_text(file, path.string()));
+  return 0;
+}
+
 int show_volume(const InfoOptions& options) {
   const VolumeAccess access = volume_access(options.volumes);
+  if (is_mesh_name(options.volume)) return show_mesh(options, find_volume(options.volume, access.folders));
   VolumeChoices choices{.nan = access.nan, .time_step = options.time_step};
   if (!options.spacing.empty()) choices.spacing = {options.spacing[0], options.spacing[1], options.spacing[2]};
   const Volume volume = read_volume(find_volume(options.volume, access.folders), choices, access.memory_limit);
@@ -101,7 +156,7 @@ std::function<int()> describe(CommandOptions& add) {
 extern const Command info_command;
 const Command info_command{
     .name = "info",
-    .summary = "Describe a volume: header, range, levels in use, signs of damage",
+    .summary = "Describe a volume or a mesh: header, range, levels in use, signs of damage",
     .example = "raytruth info ch2.nii.gz",
     .notes =
         "Volumes are NRRD (.nrrd, .nhdr), NIfTI (.nii, .nii.gz, .hdr) and NumPy arrays (.npy); `raytruth list\n"
@@ -112,7 +167,10 @@ const Command info_command{
         "and in a scene, a case or an experiment\n"
         "  \"volume\": \"head.npy\", \"spacing\": [0.5, 0.5, 1.2]\n"
         "Beside \"volume\" there may also stand \"nan\": VALUE, for voxels that are NaN, and \"time_step\": N, for\n"
-        "one volume of a series, from 0.",
+        "one volume of a series, from 0.\n"
+        "Tetrahedral meshes are VTU (.vtu) and legacy VTK (.vtk) files, both as ASCII; they stand in the signal\n"
+        "{\"kind\": \"tetrahedra\", \"mesh\": FILE, ...} of a case and as \"mesh\": FILE, in place of \"volume\", in a "
+        "scene.",
     .describe = describe};
 
 }  // namespace raytruth

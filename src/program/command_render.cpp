@@ -101,7 +101,8 @@ int render_scene(const RenderOptions& options) {
   const JsonReader json = JsonReader::from_file(options.scene);
   SceneFile scene = read_scene(json, {.volumes = volume_access(options.volumes),
                                       .opacity = options.opacity,
-                                      .ignores_gradient_opacity = options.ignores_gradient_opacity});
+                                      .ignores_gradient_opacity = options.ignores_gradient_opacity,
+                                      .takes_meshes = true});
   for (const std::string& warning : scene.warnings) say(warning);
   const auto size = scene.scene.camera.size;
   scene.scene.covers_camera = true;
@@ -109,7 +110,7 @@ int render_scene(const RenderOptions& options) {
                                 {"size", size},
                                 {"scheme", scene.program ? scene.program->name : scene.scene.scheme},
                                 {"volume", std::move(scene.volume)},
-                                {"border", name_of(scene.scene.border)},
+                                {"border", scene.scene.mesh ? std::string_view("mesh") : name_of(scene.scene.border)},
                                 {"transfer_function", std::move(scene.transfer_function)}};
   if (!scene.fitted_camera.is_null()) result["fitted_camera"] = scene.fitted_camera;
   if (!scene.warnings.empty()) result["warnings"] = scene.warnings;

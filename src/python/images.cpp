@@ -63,7 +63,8 @@ PythonImage render(py::handle scene_document, const std::optional<std::string>& 
                    int threads, const py::object& progress) {
   const Threads limit(threads);
   const Document document = read_document(scene_document, "scene");
-  SceneFile scene = read_scene(document.json, {.volumes = volume_access(document, data, nan), .opacity = {}});
+  SceneFile scene =
+      read_scene(document.json, {.volumes = volume_access(document, data, nan), .opacity = {}, .takes_meshes = true});
   warn(scene.warnings);
   if (scene.program)
     document.json.at("scheme").refuse("a program", "a scheme, or `raytruth render --programs`, which runs it,");

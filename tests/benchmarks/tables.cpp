@@ -73,11 +73,11 @@ void store(std::vector<float>& table, std::size_t size, std::size_t front, std::
 }
 
 /// Lum 2004, section 4.1: one opacity correction per composite.
-void build_by_brute_force(const OpacityTable& transfer, std::size_t size, std::vector<float>& table) {
+void build_by_brute_force(const OpacityTable& transfer, std::size_t size, std::vector<float>& table, float length = 1) {
   for (std::size_t back = 0; back < size; ++back)
     for (std::size_t front = 0; front < size; ++front) {
       const std::size_t width = front < back ? back - front : front - back;
-      const float share = 1 / static_cast<float>(width);
+      const float share = length / static_cast<float>(width);
       Texel slab;
       for (std::size_t k = 0; k < width; ++k)
         slab = over(slab, corrected(transfer, front < back ? front + k : front - 1 - k, share));
@@ -193,6 +193,74 @@ BENCHMARK(subranges_against_brute_force)
     ->Arg(2048)
     ->Iterations(1)
     ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+
+/// A table over front, back and 128 distances up to sqrt(3), each distance by itself.
+struct CellTables {
+  static constexpr std::size_t distances = 128;
+  Builders builders;
+  std::vector<Table<float>> slices;
+  std::vector<Table<float>> singles;
+
+  explicit CellTables(const TableAxes& axes)
+      : builders(axes), slices(distances, builders.table), singles(distances, builders.table) {}
+
+  [[nodiscard]] static double distance(std::size_t i) {
+    return 1.7320508 * static_cast<double>(i + 1) / static_cast<double>(distances);
+  }
+  float build() {
+    float sum = 0;
+    for (std::size_t i = 0; i < distances; ++i) {
+      TableAxes axes = builders.axes;
+      axes.length = distance(i);
+      build_subrange_table(builders.transfer, axes, slices[i]);
+      sum += slices[i].values[4];
+    }
+    return sum;
+  }
+  float build_brutally() {
+    float sum = 0;
+    for (std::size_t i = 0; i < distances; ++i) {
+      build_by_brute_force(builders.opacities, builders.axes.size, builders.plain_table,
+                           static_cast<float>(distance(i)));
+      sum += builders.plain_table[4];
+    }
+    return sum;
+  }
+  /// As many tables of one distance, each kept in memory of its own as the slices are: 32 MiB do not stay in caches,
+  /// where one table that is built again and again takes two thirds of the time.
+  float build_single_ones() {
+    float sum = 0;
+    for (Table<float>& table : singles) {
+      build_subrange_table(builders.transfer, builders.axes, table);
+      sum += table.values[4];
+    }
+    return sum;
+  }
+};
+
+/// Goal: 150 times at n = 128.
+void cell_tables_against_brute_force(benchmark::State& state) {
+  const auto one_thread = threads(1);
+  CellTables tables(axes_of(state));
+  if (!is_right(state, tables.builders)) return;
+  benchmarks::run_paired(
+      state, [&] { return tables.build(); }, [&] { return tables.build_brutally(); });
+}
+BENCHMARK(cell_tables_against_brute_force)->Arg(128)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+/// Goal: at most 1.1 times as long as 128 tables of one distance: a speedup of 0.91.
+void cell_tables_against_single_ones(benchmark::State& state) {
+  const auto one_thread = threads(1);
+  CellTables tables(axes_of(state));
+  tables.build();
+  benchmarks::run_paired(
+      state, [&] { return tables.build(); }, [&] { return tables.build_single_ones(); });
+}
+BENCHMARK(cell_tables_against_single_ones)
+    ->Arg(128)
+    ->UseManualTime()
+    ->MinTime(seconds_per_timing)
     ->Unit(benchmark::kMillisecond);
 
 /// Goals: 6 times at n = 1024 and 2048; at most 3.5 times memset at n = 2048.

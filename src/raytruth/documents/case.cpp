@@ -4,6 +4,7 @@
 #include "raytruth/core/named.hpp"
 #include "raytruth/documents/case_json.hpp"
 #include "raytruth/documents/field_document.hpp"
+#include "raytruth/documents/mesh_source.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
 #include "raytruth/metrics/signal_error.hpp"
 #include "raytruth/reference/ray_truth.hpp"
@@ -31,6 +32,8 @@ constexpr double largest_value = 0x1p900;
 constexpr std::string_view why_no_integral = "the case states no transfer function";
 constexpr std::string_view why_no_surfaces =
     "the transfer function has isosurfaces, and this scheme integrates matter alone";
+constexpr std::string_view why_no_gaps =
+    "the ray leaves the mesh and enters it again, and this scheme would sample across the gap";
 
 std::array<double, 3> read_place(const JsonReader& json) {
   const Vector3<double> vector = read_vector(json);
@@ -126,12 +129,69 @@ bool is_finite(const Vector3<double>& color, double opacity) {
   return color.isFinite().all() && std::isfinite(opacity);
 }
 
+/// Where a ray through a mesh meets isosurfaces, part by part: a gap crosses none. Lengths are those of the signal.
+SurfaceHits hits_of_parts(const MeshRay& ray, const PreciseChain<3>& signal, const std::vector<double>& scalars) {
+  SurfaceHits result;
+  DoubleDouble start;
+  for (std::size_t i = 0; i < ray.parts.size(); ++i) {
+    const std::size_t begin = ray.parts[i].first_piece;
+    const std::size_t end = i + 1 < ray.parts.size() ? ray.parts[i + 1].first_piece : signal.pieces.size();
+    PreciseChain<3> part{.pieces = {}, .length = 0.0, .of_length = signal.of_length};
+    for (std::size_t k = begin; k < end; ++k) {
+      part.pieces.push_back(signal.pieces[k]);
+      part.length += signal.pieces[k].extent;
+    }
+    // Which cells a ray meets is exact, and so is where a constant one ends but for the length that it adds.
+    SurfaceHits found = surface_hits(part, scalars, {.steepest = 0, .are_in_line = true});
+    for (SurfaceHit& hit : found.hits) {
+      hit.t += start;
+      hit.error += signal.unclaimed;
+      hit.piece += begin;
+      result.hits.push_back(hit);
+    }
+    for (UnresolvedContact& contact : found.unresolved) {
+      contact.from += start.high;
+      contact.to += start.high;
+      result.unresolved.push_back(contact);
+    }
+    start += part.length;
+  }
+  return result;
+}
+
+/// How much longer gaps make the way to a place of the signal.
+DoubleDouble gaps_before(const MeshRay& ray, std::size_t piece) {
+  DoubleDouble start;
+  DoubleDouble gap;
+  for (const MeshPart& part : ray.parts) {
+    if (part.first_piece > piece) break;
+    gap = part.from - start;
+    start += part.to - part.from;
+  }
+  return gap;
+}
+
+/// Where the ray's parts are, and through how many cells each leads.
+Json parts_json(const MeshRay& ray) {
+  Json parts = Json::array();
+  for (std::size_t i = 0; i < ray.parts.size(); ++i) {
+    const std::size_t end = i + 1 < ray.parts.size() ? ray.parts[i + 1].first_piece : ray.cells.size();
+    parts.push_back({{"from", static_cast<double>(ray.parts[i].from)},
+                     {"to", static_cast<double>(ray.parts[i].to)},
+                     {"cells", end - ray.parts[i].first_piece}});
+  }
+  return parts;
+}
+
 /// Where the ray meets the case's isosurfaces.
 template <int Degree>
 SurfaceHits hits_of(const Case& ray, const Chain<Degree>& /*signal*/) {
   std::vector<double> scalars;
   for (const Isosurface& surface : ray.isosurfaces) scalars.push_back(surface.s);
-  return surface_hits(std::get<PreciseChain<Degree>>(ray.precise_signal), scalars, ray.surroundings);
+  const auto& signal = std::get<PreciseChain<Degree>>(ray.precise_signal);
+  if constexpr (Degree == 3)
+    if (ray.mesh_ray) return hits_of_parts(*ray.mesh_ray, signal, scalars);
+  return surface_hits(signal, scalars, ray.surroundings);
 }
 
 /// The certified answer to the case; `hits`: of its isosurfaces, null if it has none.
@@ -156,9 +216,10 @@ Json truth_json(const Certified& truth) {
 }
 
 /// The hits of isosurfaces, each with its place in binary64 and what that may be off by.
-void add_hits(const SurfaceHits& found, Json& answer) {
+void add_hits(SurfaceHits found, const std::optional<MeshRay>& mesh_ray, Json& answer) {
   Json hits = Json::array();
-  for (const SurfaceHit& hit : found.hits) {
+  for (SurfaceHit& hit : found.hits) {
+    if (mesh_ray) hit.t += gaps_before(*mesh_ray, hit.piece);
     const auto t = static_cast<double>(hit.t);
     const double radius = std::nextafter(hit.error + std::abs(static_cast<double>(hit.t - t)), HUGE_VAL);
     hits.push_back({{"t", t}, {"radius", radius}, {"surface", hit.surface}, {"rising", hit.is_rising}});
@@ -270,8 +331,9 @@ Case CaseReader::read(const JsonReader& json, std::vector<std::string>& warnings
     ray.transfer = std::move(read.transfer);
     ray.isosurfaces = std::move(read.isosurfaces);
     if (!ray.isosurfaces.empty() && (kind == "marschner_lobb" || kind == "analytic"))
-      transfer->refuse(fmt::format("isosurfaces with the signal {}", kind),
-                       "them with piecewise_polynomial, trilinear or tricubic signals, whose crossings are certified,");
+      transfer->refuse(
+          fmt::format("isosurfaces with the signal {}", kind),
+          "them with piecewise_polynomial, trilinear, tricubic or tetrahedra signals, whose crossings are certified,");
     if (read.is_of_another_program) ray.transfer_description = std::move(read.description);
   }
   ray.emission = read_emission(json);
@@ -281,6 +343,8 @@ Case CaseReader::read(const JsonReader& json, std::vector<std::string>& warnings
     read_trilinear(signal, ray, warnings);
   else if (kind == "tricubic")
     read_tricubic(signal, ray, warnings);
+  else if (kind == "tetrahedra")
+    read_tetrahedra(signal, ray, warnings);
   else if (kind == "marschner_lobb")
     read_marschner_lobb(signal, ray);
   else if (kind == "analytic")
@@ -314,6 +378,31 @@ void CaseReader::read_tricubic(const JsonReader& json, Case& result, std::vector
   trace(json, TricubicField(read_volume_of(json, warnings), kind, border), ray, result, warnings);
 }
 
+void CaseReader::read_tetrahedra(const JsonReader& json, Case& result, std::vector<std::string>& warnings) {
+  const bool is_split = json.find("volume").has_value();
+  if (is_split)
+    json.only({"kind", "volume", "split", "parity", "repair", "nan", "time_step", "spacing", "origin", "direction",
+               "length"});
+  else
+    json.only({"kind", "mesh", "origin", "direction", "length"});
+  const Ray ray = read_ray(json);
+  Json which = Json::object();
+  for (const auto& [name, value] : json.json().items())
+    if (name != "origin" && name != "direction" && name != "length") which[name] = value;
+  if (!mesh_.field || which != last_mesh_) {
+    mesh_ = is_split ? read_split_volume(json, volumes_) : read_mesh_source(json.at("mesh"), volumes_);
+    last_mesh_ = std::move(which);
+    warnings.insert(warnings.end(), mesh_.warnings.begin(), mesh_.warnings.end());
+  }
+  result.mesh_ray = json.at("origin").blame_for([&] { return mesh_.field->trace(ray); });
+  auto [chain, error] = result.mesh_ray->chain();
+  if (result.transfer) {
+    result.signal_error = std::move(error);
+    result.precise_signal = result.mesh_ray->signal;
+  }
+  result.signal = std::move(chain);
+}
+
 const Grid& CaseReader::read_volume_of(const JsonReader& signal, std::vector<std::string>& warnings) {
   const JsonReader place = signal.at("volume");
   const FieldDocument field = read_volume_member(signal, false);
@@ -339,9 +428,10 @@ Json evaluate(const Case& ray) {
         std::optional<Certified> truth;
         if (ray.transfer) truth = truth_of(ray, signal, hits ? &*hits : nullptr);
         Json schemes = Json::object();
-        if (hits) {
+        const bool has_gaps = ray.mesh_ray && ray.mesh_ray->parts.size() > 1;
+        if (hits || has_gaps) {
           for (const std::string& scheme : ray.schemes)
-            if (scheme != "reference") schemes[scheme] = refused(why_no_surfaces);
+            if (scheme != "reference") schemes[scheme] = refused(hits ? why_no_surfaces : why_no_gaps);
         } else if (names_a_scheme(ray)) {
           SchemeAnswers answer_of(ray, signal, truth ? &*truth : nullptr);
           for (const std::string& scheme : ray.schemes)
@@ -349,8 +439,9 @@ Json evaluate(const Case& ray) {
         }
         Json answer{{"length", signal.length()}};
         if (ray.border) answer["border"] = name_of(*ray.border);
+        if (ray.mesh_ray) answer["parts"] = parts_json(*ray.mesh_ray);
         answer["reference"] = truth ? truth_json(*truth) : refused(why_no_integral);
-        if (hits) add_hits(*hits, answer["reference"]);
+        if (hits) add_hits(std::move(*hits), ray.mesh_ray, answer["reference"]);
         answer["schemes"] = std::move(schemes);
         if (!ray.transfer_description.is_null()) answer["transfer_function"] = ray.transfer_description;
         return answer;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "raytruth/cells/tetrahedral_field.hpp"
 #include "raytruth/core/chain.hpp"
 #include "raytruth/documents/json/json_reader.hpp"
+#include "raytruth/documents/mesh_source.hpp"
 #include "raytruth/documents/outside_program.hpp"
 #include "raytruth/documents/volume_source.hpp"
 #include "raytruth/reference/arb_integral.hpp"
@@ -41,6 +43,7 @@ struct Case {
   std::vector<Isosurface> isosurfaces = {};
   Surroundings surroundings = {};             ///< of a ray through a volume
   std::optional<Border> border = {};          ///< of the volume, if there is one
+  std::optional<MeshRay> mesh_ray = {};       ///< of a ray through tetrahedra
   std::vector<OutsideProgram> programs = {};  ///< named among the schemes; `evaluate` leaves them out
 };
 
@@ -55,11 +58,14 @@ class CaseReader {
  private:
   void read_trilinear(const JsonReader& json, Case& result, std::vector<std::string>& warnings);
   void read_tricubic(const JsonReader& json, Case& result, std::vector<std::string>& warnings);
+  void read_tetrahedra(const JsonReader& json, Case& result, std::vector<std::string>& warnings);
   const Grid& read_volume_of(const JsonReader& signal, std::vector<std::string>& warnings);
 
   VolumeAccess volumes_;
   std::string last_volume_;  ///< which one it is; empty: none
   Grid grid_;
+  nlohmann::ordered_json last_mesh_ = {};  ///< what the last signal said of its mesh
+  SourcedMesh mesh_ = {};
 };
 
 /// What `eval` answers. Throws InputError for more than 10^7 samples.

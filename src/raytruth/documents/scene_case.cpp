@@ -29,7 +29,8 @@ void add_outside_error(const SceneFile& asked, bool runs_programs, const Image& 
 }  // namespace
 
 bool is_scene_case(const JsonReader& json) {
-  return json.is_object() && (json.find("camera") || (json.find("volume") && json.find("scheme")));
+  return json.is_object() &&
+         (json.find("camera") || ((json.find("volume") || json.find("mesh")) && json.find("scheme")));
 }
 
 nlohmann::ordered_json evaluate(const SceneFile& asked, bool runs_programs) {
@@ -40,7 +41,7 @@ nlohmann::ordered_json evaluate(const SceneFile& asked, bool runs_programs) {
   scene.covers_camera = true;
   const Rendering truth = Renderer(std::move(scene)).render();
   nlohmann::ordered_json result{{"size", asked.scene.camera.size},
-                                {"border", name_of(asked.scene.border)},
+                                {"border", asked.scene.mesh ? std::string_view("mesh") : name_of(asked.scene.border)},
                                 {"reference", radius_json(truth)},
                                 {"scheme", asked.program ? asked.program->name : asked.scene.scheme}};
   if (!asked.fitted_camera.is_null()) result["fitted_camera"] = asked.fitted_camera;

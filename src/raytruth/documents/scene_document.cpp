@@ -6,6 +6,7 @@
 #include "raytruth/documents/camera_json.hpp"
 #include "raytruth/documents/case_json.hpp"
 #include "raytruth/documents/field_document.hpp"
+#include "raytruth/documents/mesh_source.hpp"
 #include "raytruth/documents/radius_axis_json.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
 #include "raytruth/documents/scene_warnings.hpp"
@@ -62,6 +63,28 @@ Grid read_voxels(const JsonReader& json, const SceneOptions& options, SceneFile&
   return std::move(read.grid);
 }
 
+/// Refuses what stands beside a mesh but belongs to a volume.
+void refuse_volumes_members(const JsonReader& json) {
+  for (const std::string_view of_a_volume :
+       {"volume", "repair", "nan", "time_step", "spacing", "border", "reconstruction", "table", "shading",
+        "early_termination", "empty_space", "step"})
+    if (const auto stated = json.find(of_a_volume))
+      stated->refuse(fmt::format("{} beside a mesh", of_a_volume),
+                     "a mesh with the reference, or with a scheme and the sampling cells,");
+}
+
+/// The tetrahedra, and the voxel that stands where a scene has a grid.
+void read_mesh(const JsonReader& json, const SceneOptions& options, SceneFile& result) {
+  const JsonReader place = json.at("mesh");
+  if (!options.takes_meshes) place.refuse("a mesh", "one where an image is rendered; here a volume");
+  SourcedMesh read = read_mesh_source(place, options.volumes);
+  result.volume = read.file.empty() ? nlohmann::ordered_json("inline") : nlohmann::ordered_json(read.file);
+  result.warnings = std::move(read.warnings);
+  result.scene.mesh = std::move(read.field);
+  result.scene.grid = {.size = {1, 1, 1}, .spacing = {1, 1, 1}, .values = {0}};
+  result.scene.border = Border::voxel_centres;
+}
+
 std::array<std::int64_t, 2> read_image_size(const JsonReader& json) {
   const auto items = json.items(2);
   if (items.size() != 2) json.refuse_value("a list of width and height");
@@ -75,11 +98,25 @@ std::array<std::int64_t, 2> read_image_size(const JsonReader& json) {
   return size;
 }
 
+/// As around a volume that has the mesh's box.
+Camera camera_around(const TetrahedralField& mesh, const std::array<std::int64_t, 2>& size) {
+  const auto [low, high] = mesh.box();
+  Camera camera = fitted_camera({1, 1, 1}, {high[0] - low[0], high[1] - low[1], high[2] - low[2]}, size);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double centre = (low[axis] + high[axis]) / 2;
+    camera.eye[axis] += centre;
+    camera.target[axis] += centre;
+  }
+  return camera;
+}
+
 /// One that shows the whole volume, for a scene that says none, or only its size.
 Camera fit_camera(const std::optional<JsonReader>& json, SceneFile& result) {
   constexpr std::array<std::int64_t, 2> usual_size{512, 512};
+  const auto size = json ? read_image_size(json->at("size")) : usual_size;
   const Grid& grid = result.scene.grid;
-  Camera camera = fitted_camera(grid.size, grid.spacing, json ? read_image_size(json->at("size")) : usual_size);
+  Camera camera =
+      result.scene.mesh ? camera_around(*result.scene.mesh, size) : fitted_camera(grid.size, grid.spacing, size);
   result.fitted_camera = camera_json(camera);
   return camera;
 }
@@ -249,13 +286,16 @@ void refuse_without_surfaces(const JsonReader& json, const Scene& scene) {
 
 SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   check_form(json, "scene/1");
-  json.only({"raytruth", "volume", "repair", "nan", "time_step", "spacing", "border", "reconstruction",
+  json.only({"raytruth", "volume", "mesh", "repair", "nan", "time_step", "spacing", "border", "reconstruction",
              "transfer_function", "emission", "camera", "scheme", "sampling", "step", "shading", "table",
              "early_termination", "empty_space"});
+  if (json.find("mesh")) refuse_volumes_members(json);
   std::optional<OutsideProgram> program;
   if (is_outside_program(json.at("scheme"))) program = read_outside_program(json.at("scheme"));
   const std::string scheme = program ? "reference" : read_scheme(json.at("scheme"));
   SceneFile result{.scene = {.transfer = PiecewiseLinear(std::vector<TransferPoint>(1)), .scheme = scheme}};
+  if (program && json.find("mesh"))
+    json.at("scheme").refuse("a program with a mesh", "reference, or a scheme with the sampling cells,");
   if (program) result.document = json.json();
   result.program = std::move(program);
   Scene& scene = result.scene;
@@ -267,13 +307,18 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   if (const auto shading = json.find("shading")) scene.shading = read_shading(*shading);
   if (const auto opaque = json.find("early_termination")) scene.opaque = opaque->number(0, 1);
   if (const auto empty = json.find("empty_space")) scene.empty_space = read_empty_space(*empty);
-  scene.grid = read_voxels(json, options, result);
+  if (json.find("mesh"))
+    read_mesh(json, options, result);
+  else
+    scene.grid = read_voxels(json, options, result);
   const auto camera = json.find("camera");
   const bool says_more_than_size =
       camera && !(camera->is_object() && camera->json().size() == 1 && camera->find("size"));
   scene.camera = says_more_than_size ? read_camera(*camera, scene.grid) : fit_camera(camera, result);
   const JsonReader transfer = json.at("transfer_function");
   const TransferVolume volume = transfer_volume(scene.grid);
+  if (scene.mesh && is_of_another_program(transfer))
+    transfer.refuse("another program's transfer function with a mesh", "points of this one");
   TransferDocument read = read_transfer_function(transfer,
                                                  {.volume = &volume,
                                                   .opacity = options.opacity,
@@ -283,11 +328,13 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   scene.transfer = std::move(read.transfer);
   scene.isosurfaces = std::move(read.isosurfaces);
   if (!scene.isosurfaces.empty()) refuse_without_surfaces(json, scene);
+  if (!scene.isosurfaces.empty() && scene.mesh)
+    transfer.refuse("isosurfaces with a mesh", "matter alone, or rays of cases,");
   result.transfer_function = std::move(read.description);
   if (scene.shading && scene.transfer.is_linear_in_opacity()) result.transfer_function["lit"] = sampled_opacity;
   // RayIntegral refuses numbers that it cannot calculate with.
   transfer.blame_for([&] { return RayIntegral(scene.transfer, scene.emission); });
-  warn_of_what_is_not_seen(scene, result.warnings);
+  if (!scene.mesh) warn_of_what_is_not_seen(scene, result.warnings);
   return result;
 }
 

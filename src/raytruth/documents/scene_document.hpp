@@ -19,12 +19,13 @@ struct SceneOptions {
   VolumeAccess volumes;
   std::optional<std::string> opacity;  ///< file
   bool ignores_gradient_opacity = false;
+  bool takes_meshes = false;  ///< "mesh" in place of "volume"
 };
 
 /// A scene as its JSON says it; experiments/schemas/scene.json describes it.
 struct SceneFile {
   Scene scene;
-  nlohmann::ordered_json volume = {};             ///< where it comes from
+  nlohmann::ordered_json volume = {};             ///< where it, or the mesh, comes from
   nlohmann::ordered_json transfer_function = {};  ///< how it was understood
   nlohmann::ordered_json fitted_camera = {};      ///< as a scene would say it; null: the scene has its own
   std::vector<std::string> warnings = {};         ///< one line each

@@ -73,13 +73,13 @@ PreparedScene::PreparedScene(Scene its_scene)
       placing_error(placing_error_of(scene, view)) {
   refuse_far_cameras(scene, view);
   // A longer step makes the same samples, both ends of the ray, but numbers that nobody can calculate with.
-  if (scene.step) scene.step = std::min(*scene.step, 2 * diagonal(scene.grid));
+  if (scene.step && !scene.mesh) scene.step = std::min(*scene.step, 2 * diagonal(scene.grid));
 }
 
 struct Renderer::Parts {
   explicit Parts(Scene its_scene) : prepared(std::move(its_scene)), make_renderer(factory_of(prepared)) {
     const Scene& scene = prepared.scene;
-    if (scene.covers_camera && scene.scheme == "reference" && !scene.shading)
+    if (!scene.mesh && scene.covers_camera && scene.scheme == "reference" && !scene.shading)
       camera_rounding.emplace(scene.camera, scene.grid.spacing, scene.grid.size, scene.border);
   }
 

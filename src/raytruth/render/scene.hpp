@@ -19,12 +19,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace raytruth {
+
+class TetrahedralField;
 
 /// How a table is read between its entries.
 enum class TableFilter { nearest, linear };
@@ -71,6 +74,8 @@ struct SceneShading {
 /// An image to be made. Lengths are in smallest spacings of the grid: extinctions are per such a length, steps so long.
 struct Scene {
   Grid grid = {};
+  /// In place of the grid, which then is one voxel of size 1 that nobody looks at: world coordinates are the mesh's.
+  std::shared_ptr<const TetrahedralField> mesh = {};
   FieldKind field = FieldKind::trilinear;
   Border border = Border::half_voxel;
   PiecewiseLinear transfer;
