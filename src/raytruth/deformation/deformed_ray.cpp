@@ -25,12 +25,6 @@ constexpr double rounding_of_sums = 0x1p-47;  // of the magnitudes of what is ad
 using ArcSeries = std::array<double, arc_degree + 1>;
 using PieceSeries = std::array<double, largest_degree + 1>;
 
-double value_of(const ArcSeries& series, double xi) {
-  double sum = 0;
-  for (std::size_t k = series.size(); k-- > 0;) sum = series[k] + xi * sum;
-  return sum;
-}
-
 /// The series about `middle`, in units of `half`.
 ArcSeries shifted(ArcSeries series, double middle, double half) {
   for (std::size_t last = 0; last < arc_degree; ++last)

@@ -105,7 +105,40 @@ Lattice::Lattice(const LatticeBox& box, const std::array<std::int64_t, 3>& cells
             cell.powers[power][axis] = static_cast<double>(values[power]);
         }
         cells_of_powers_.push_back(cell);
+        find_bend();
       }
+}
+
+void Lattice::find_bend() {
+  // On the whole box: second differences of control points, for every pair of axes, are what second derivatives are
+  // means of, in cells.
+  const std::array<std::int64_t, 3> size{cells_[0] + 2, cells_[1] + 2, cells_[2] + 2};
+  std::array<std::array<double, 3>, 3> largest{};
+  const auto unit = [](std::size_t axis) {
+    std::array<std::int64_t, 3> step{};
+    step[axis] = 1;
+    return step;
+  };
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = a; b < 3; ++b) {
+      const auto one = unit(a);
+      const auto other = unit(b);
+      for (std::int64_t k = 0; k + one[2] + other[2] < size[2]; ++k)
+        for (std::int64_t j = 0; j + one[1] + other[1] < size[1]; ++j)
+          for (std::int64_t i = 0; i + one[0] + other[0] < size[0]; ++i) {
+            const Eigen::Vector3d difference =
+                point({i + one[0] + other[0], j + one[1] + other[1], k + one[2] + other[2]}) -
+                point({i + one[0], j + one[1], k + one[2]}) - point({i + other[0], j + other[1], k + other[2]}) +
+                point({i, j, k});
+            largest[a][b] = std::max(largest[a][b], difference.norm());
+          }
+    }
+  double sum = 0;
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = a; b < 3; ++b) sum += (a == b ? 1 : 2) * largest[a][b] * largest[a][b];
+  // By object coordinates: local ones change by no more than the inverse of the cell's edges.
+  const double by_object = cell_edges_.inverse().norm();
+  bend_ = std::sqrt(sum) * by_object * by_object;
 }
 
 Eigen::Vector3d Lattice::operator()(const Eigen::Vector3d& object) const {

@@ -68,6 +68,9 @@ class Lattice {
   /// Object coordinates by the local ones of any cell: columns.
   [[nodiscard]] const Eigen::Matrix3d& cell_edges() const { return cell_edges_; }
 
+  /// A bound of the second derivatives of F by object coordinates: the root of the sum of their squares.
+  [[nodiscard]] double bend() const { return bend_; }
+
   [[nodiscard]] const LatticeBox& box() const { return box_; }
   [[nodiscard]] const std::array<std::int64_t, 3>& cells() const { return cells_; }
   [[nodiscard]] const std::vector<Eigen::Vector3d>& points() const { return points_; }
@@ -80,12 +83,15 @@ class Lattice {
   }
 
  private:
+  void find_bend();
+
   LatticeBox box_;
   std::array<std::int64_t, 3> cells_;
   std::vector<Eigen::Vector3d> points_;
   Eigen::Matrix3d inverse_edges_;
   Eigen::Matrix3d cell_edges_;
   std::vector<LatticeCell> cells_of_powers_;
+  double bend_ = 0;
 };
 
 /// The control points of a lattice that moves nothing, or, `printed`, what the dissertation's placement moves.
