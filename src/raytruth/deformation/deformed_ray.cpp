@@ -114,8 +114,11 @@ class DeformedVolume::Tracer {
 
   void run() {
     const FaceCrossings crossings = volume_.faces_(equations_);
-    for (std::size_t i = 0; i + 1 < crossings.found.size() && signal_.is_certified; i += 2)
+    for (std::size_t i = 0; i + 1 < crossings.found.size() && signal_.is_certified; i += 2) {
+      if (!(crossings.found[i + 1].t > 0)) continue;  // behind the ray's origin
+      is_before_origin_ = crossings.found[i].t < 0;
       follow(crossings.found[i], crossings.found[i + 1]);
+    }
     if (crossings.in_doubt > 0) doubt(crossings.in_doubt);
     signal_.chain.end = end_;
     if (!signal_.is_certified) signal_.error.unclaimed = infinity;
@@ -252,7 +255,7 @@ class DeformedVolume::Tracer {
   /// One that ends where its series does stops at the last border of voxels before, which is an end of pieces anyway.
   void emit(const DeformedArc& arc, double begin, Leaving& leaving) {
     double end = leaving.xi;
-    if (!(end > begin)) return;
+    if (!(end > begin) || (is_before_origin_ && !reach_origin(arc, end, begin))) return;
     std::array<ArcSeries, 3> voxel{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto row = volume_.voxel_by_local_.row(static_cast<Eigen::Index>(axis));
@@ -277,6 +280,24 @@ class DeformedVolume::Tracer {
     const double of_lattice = volume_.curvature_ * out_of_cell * out_of_cell;
     for (std::size_t i = 0; i + 1 < breaks_.size(); ++i)
       if (breaks_[i + 1] > breaks_[i]) emit_piece(arc, voxel, breaks_[i], breaks_[i + 1], off + of_lattice);
+  }
+
+  /// Whether a ray that begins inside of the object does so on this arc; then at `begin`.
+  bool reach_origin(const DeformedArc& arc, double end, double& begin) {
+    const LatticeCell& cell = lattice_.cell(place_.cell);
+    const auto t = [&](double xi) { return equations_.t_of(cell.value(arc.value(xi))); };
+    if (t(end) <= 0) return false;
+    double low = begin;
+    double high = end;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = (low + high) / 2;
+      (t(middle) > 0 ? high : low) = middle;
+    }
+    begin = high;
+    is_before_origin_ = false;
+    // t itself is rounded, as large as the numbers are that it is the difference of.
+    doubt(0x1p-46 * (cell.centre.norm() + lattice_.box().edges.norm()));
+    return true;
   }
 
   /// How steeply the curve passes the plane in which it begins: right across it but for a face of the box.
@@ -422,6 +443,7 @@ class DeformedVolume::Tracer {
   LatticePlace place_;
   Eigen::Vector3d across_ = Eigen::Vector3d::Zero();
   double half_length_ = longest_arc;
+  bool is_before_origin_ = false;
   DoubleDouble end_;
   std::vector<double> breaks_;
 };

@@ -47,7 +47,8 @@ class DeformedVolume {
   DeformedVolume(const Grid& voxels, Border border, const std::array<double, 3>& spacing, const Lattice& lattice,
                  double least_determinant);
 
-  /// `ray` is in world coordinates; its length is not looked at. Throws InputError for a bad direction.
+  /// `ray` is in world coordinates, and may begin inside of the object; its length is not looked at. Throws InputError
+  /// for a bad direction.
   void trace(const Ray& ray, DeformedSignal& signal) const;
 
   [[nodiscard]] const Lattice& lattice() const { return *lattice_; }

@@ -12,6 +12,12 @@ struct LatticeProof {
   std::string refusal = {};      ///< what is wrong, with the cells; empty: nothing
 };
 
+/// A lattice that is proven one to one.
+struct Deformation {
+  Lattice lattice;
+  double least_determinant = 0;
+};
+
 /// det DF is positive everywhere: in a part of a cell with the derivative G_0 in its middle and |G - G_0| <= E, by rows
 /// of |G_0^-1| E = n < 1, det G >= det G_0 (1 - n)^3; parts are halved until that is positive, or a middle is not.
 ///

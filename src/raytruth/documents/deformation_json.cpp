@@ -1,7 +1,6 @@
 #include "raytruth/documents/deformation_json.hpp"
 
 #include "raytruth/deformation/displacement.hpp"
-#include "raytruth/deformation/lattice_proof.hpp"
 #include "raytruth/documents/case_json.hpp"
 
 #include <fmt/format.h>

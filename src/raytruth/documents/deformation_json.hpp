@@ -1,6 +1,6 @@
 #pragma once
 
-#include "raytruth/deformation/lattice.hpp"
+#include "raytruth/deformation/lattice_proof.hpp"
 #include "raytruth/documents/json/json_reader.hpp"
 #include "raytruth/signals/border.hpp"
 #include "raytruth/volume/grid.hpp"
@@ -8,12 +8,6 @@
 #include <array>
 
 namespace raytruth {
-
-/// A deformation, and what is proven of it.
-struct Deformation {
-  Lattice lattice;
-  double least_determinant = 0;
-};
 
 /// Reads "deformation" (experiments/schemas/case.json) of a volume whose object coordinates are voxels times `spacing`.
 /// Its box is the volume's where none is stated, its border with it. Refuses lattices that do not hold the volume,

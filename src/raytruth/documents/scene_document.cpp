@@ -5,6 +5,7 @@
 #include "raytruth/core/named.hpp"
 #include "raytruth/documents/camera_json.hpp"
 #include "raytruth/documents/case_json.hpp"
+#include "raytruth/documents/deformation_json.hpp"
 #include "raytruth/documents/field_document.hpp"
 #include "raytruth/documents/radius_axis_json.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
@@ -16,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string_view>
 #include <variant>
 
@@ -245,13 +247,22 @@ void refuse_without_surfaces(const JsonReader& json, const Scene& scene) {
   if (scene.shading) json.at("shading").refuse("light on isosurfaces", "isosurfaces without shading");
 }
 
+/// Refuses what does not follow the rays of a deformed volume.
+void refuse_with_deformation(const JsonReader& json, const Scene& scene) {
+  if (scene.scheme != "reference")
+    json.at("scheme").refuse(fmt::format("{} of a deformed volume", scene.scheme), "the scheme reference");
+  if (scene.shading) json.at("shading").refuse("light on a deformed volume", "a deformation without shading");
+  if (scene.field != FieldKind::trilinear)
+    json.at("reconstruction").refuse("tricubic reconstruction of a deformed volume", "trilinear");
+}
+
 }  // namespace
 
 SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   check_form(json, "scene/1");
   json.only({"raytruth", "volume", "repair", "nan", "time_step", "spacing", "border", "reconstruction",
              "transfer_function", "emission", "camera", "scheme", "sampling", "step", "shading", "table",
-             "early_termination", "empty_space"});
+             "early_termination", "empty_space", "deformation"});
   std::optional<OutsideProgram> program;
   if (is_outside_program(json.at("scheme"))) program = read_outside_program(json.at("scheme"));
   const std::string scheme = program ? "reference" : read_scheme(json.at("scheme"));
@@ -268,6 +279,11 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   if (const auto opaque = json.find("early_termination")) scene.opaque = opaque->number(0, 1);
   if (const auto empty = json.find("empty_space")) scene.empty_space = read_empty_space(*empty);
   scene.grid = read_voxels(json, options, result);
+  if (const auto deformation = json.find("deformation")) {
+    refuse_with_deformation(json, scene);
+    scene.deformation = std::make_shared<const Deformation>(
+        read_deformation(*deformation, scene.grid, scene.border, scene.grid.spacing));
+  }
   const auto camera = json.find("camera");
   const bool says_more_than_size =
       camera && !(camera->is_object() && camera->json().size() == 1 && camera->find("size"));
@@ -283,6 +299,8 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   scene.transfer = std::move(read.transfer);
   scene.isosurfaces = std::move(read.isosurfaces);
   if (!scene.isosurfaces.empty()) refuse_without_surfaces(json, scene);
+  if (!scene.isosurfaces.empty() && scene.deformation)
+    json.at("deformation").refuse("a deformation of isosurfaces", "one of what a transfer function without them shows");
   result.transfer_function = std::move(read.description);
   if (scene.shading && scene.transfer.is_linear_in_opacity()) result.transfer_function["lit"] = sampled_opacity;
   // RayIntegral refuses numbers that it cannot calculate with.

@@ -1,5 +1,6 @@
 #include "raytruth/deformation/deformed_ray.hpp"
 #include "raytruth/core/random.hpp"
+#include "raytruth/deformation/deformed_light.hpp"
 #include "raytruth/deformation/displacement.hpp"
 #include "raytruth/deformation/lattice_proof.hpp"
 #include "raytruth/reference/ray_integral.hpp"
@@ -55,12 +56,7 @@ const PiecewiseLinear& transfer() {
   return result;
 }
 
-/// The light of a deformed ray, with the error of its lengths.
-Certified light_of(const DeformedSignal& signal) {
-  Certified light = RayIntegral(transfer(), Emission::associated)(signal.chain, signal.error);
-  light.radius += 3 * signal.rate_error;
-  return light;
-}
+Certified light_of(const DeformedSignal& signal) { return DeformedLight(transfer(), Emission::associated)(signal); }
 
 /// The depth along a ray in the world, by Gauss quadrature between all borders that Newton's inverse passes; nothing of
 /// it knows of arcs.
@@ -219,6 +215,22 @@ TEST(DeformedRay, ARayBesideTheObjectMeetsNothing) {
   const DeformedSignal signal = trace(grid, lattice, {.origin = {-100, 60, 12}, .direction = {1, 0, 0}});
   EXPECT_TRUE(signal.chain.pieces.empty());
   EXPECT_EQ(signal.error.unclaimed, 0);
+}
+
+TEST(DeformedRay, ARayMayBeginInside) {
+  const Grid grid = noise();
+  const Lattice lattice = lattice_of({RandomDisplacement{.amplitude = 0.3, .seed = 9}});
+  for (std::uint64_t i = 0; i < 5; ++i) {
+    Ray ray = ray_of(i);
+    const double whole = 1 - light_of(trace(grid, lattice, ray)).opacity;
+    for (std::size_t axis = 0; axis < 3; ++axis) ray.origin[axis] += 100 * ray.direction[axis];
+    const double onwards = 1 - light_of(trace(grid, lattice, ray)).opacity;
+    for (double& component : ray.direction) component = -component;
+    const double back = 1 - light_of(trace(grid, lattice, ray)).opacity;
+    EXPECT_LT(onwards, 0.9);
+    EXPECT_LT(back, 0.9);
+    EXPECT_NEAR(onwards * back, whole, 1e-11);
+  }
 }
 
 TEST(DeformedRay, ALargerLatticeShowsTheVolumeAlone) {

@@ -12,6 +12,7 @@
 namespace raytruth {
 
 extern const Technique cell_march_pixels;
+extern const Technique deformed_pixels;
 extern const Technique quadratic_gray_table_pixels;
 extern const Technique reference_pixels;
 extern const Technique scheme_pixels;
@@ -25,6 +26,7 @@ extern const Technique table_pixels;
 
 std::span<const Technique* const> techniques() {
   static constexpr std::array list{
+      &deformed_pixels,
       &surface_pixels,
       &shaded_reference_pixels,
       &reference_pixels,
