@@ -44,7 +44,7 @@ nlohmann::ordered_json evaluate_document(const JsonReader& document, const Evalu
     if (is_slab_case(item)) {
       cases.emplace_back(read_slab_case(item, warnings));
     } else if (is_scene_case(item)) {
-      SceneFile scene = read_scene(item, {.volumes = request.volumes, .opacity = {}, .takes_meshes = true});
+      SceneFile scene = read_scene(item, {.volumes = request.volumes, .opacity = {}, .only_renders = true});
       warnings.insert(warnings.end(), scene.warnings.begin(), scene.warnings.end());
       cases.emplace_back(std::move(scene));
     } else {

@@ -102,7 +102,7 @@ int render_scene(const RenderOptions& options) {
   SceneFile scene = read_scene(json, {.volumes = volume_access(options.volumes),
                                       .opacity = options.opacity,
                                       .ignores_gradient_opacity = options.ignores_gradient_opacity,
-                                      .takes_meshes = true});
+                                      .only_renders = true});
   for (const std::string& warning : scene.warnings) say(warning);
   const auto size = scene.scene.camera.size;
   scene.scene.covers_camera = true;

@@ -64,7 +64,7 @@ PythonImage render(py::handle scene_document, const std::optional<std::string>& 
   const Threads limit(threads);
   const Document document = read_document(scene_document, "scene");
   SceneFile scene =
-      read_scene(document.json, {.volumes = volume_access(document, data, nan), .opacity = {}, .takes_meshes = true});
+      read_scene(document.json, {.volumes = volume_access(document, data, nan), .opacity = {}, .only_renders = true});
   warn(scene.warnings);
   if (scene.program)
     document.json.at("scheme").refuse("a program", "a scheme, or `raytruth render --programs`, which runs it,");

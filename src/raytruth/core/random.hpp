@@ -15,7 +15,8 @@ enum class RandomStream : std::uint32_t {
   cases = 5,
   molecules = 6,
   noise = 7,
-  pixels = 8
+  pixels = 8,
+  lattice = 9
 };
 
 /// Four numbers uniform in [0, 1), multiples of 2^-32, that depend on the arguments alone: Philox 4x32-10

@@ -2,7 +2,9 @@
 
 #include "raytruth/catalogue.hpp"
 #include "raytruth/core/named.hpp"
+#include "raytruth/deformation/deformed_light.hpp"
 #include "raytruth/documents/case_json.hpp"
+#include "raytruth/documents/deformation_json.hpp"
 #include "raytruth/documents/field_document.hpp"
 #include "raytruth/documents/mesh_source.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
@@ -30,6 +32,7 @@ using Json = nlohmann::ordered_json;
 constexpr double largest_value = 0x1p900;
 
 constexpr std::string_view why_no_integral = "the case states no transfer function";
+constexpr std::string_view why_no_deformation = "the case states a deformation, and this scheme follows straight rays";
 constexpr std::string_view why_no_surfaces =
     "the transfer function has isosurfaces, and this scheme integrates matter alone";
 constexpr std::string_view why_no_gaps =
@@ -56,6 +59,20 @@ void read_piecewise_polynomial(const JsonReader& json, Case& ray) {
     ray.precise_signal = precise_piecewise_polynomial(breaks, coefficients);
   }
   ray.signal = std::move(chain);
+}
+
+/// The ray through the deformed volume: origin and direction are the world's, in voxels as the object's are.
+void trace_deformed(const JsonReader& json, const JsonReader& deformation, const TrilinearField& field, const Ray& ray,
+                    Case& result) {
+  if (const auto length = json.find("length"))
+    length->refuse("a length with a deformation", "whole rays: what is cut off is not known before they are bent,");
+  constexpr std::array<double, 3> unit{1, 1, 1};
+  const Deformation read = read_deformation(deformation, field.grid(), field.border(), unit);
+  const DeformedVolume volume(field.grid(), field.border(), unit, read.lattice, read.least_determinant);
+  result.deformed.emplace();
+  volume.trace(ray, *result.deformed);
+  result.signal = result.deformed->chain;
+  result.border = field.border();
 }
 
 /// The origin, direction and length of a ray; the direction is checked.
@@ -197,6 +214,7 @@ SurfaceHits hits_of(const Case& ray, const Chain<Degree>& /*signal*/) {
 /// The certified answer to the case; `hits`: of its isosurfaces, null if it has none.
 template <int Degree>
 Certified truth_of(const Case& ray, const Chain<Degree>& signal, const SurfaceHits* hits) {
+  if (ray.deformed) return DeformedLight(*ray.transfer, ray.emission)(*ray.deformed);
   if (const auto* const marschner_lobb = std::get_if<MarschnerLobbRay>(&ray.formula))
     return arb_integral(*marschner_lobb, *ray.transfer, ray.emission);
   if (const auto* const analytic = std::get_if<AnalyticSignal>(&ray.formula))
@@ -213,6 +231,14 @@ Json truth_json(const Certified& truth) {
   Json answer{{"color", color_json(truth.color)}, {"opacity", truth.opacity}, {"error_bound", truth.radius}};
   add_status(answer, truth.status);
   return answer;
+}
+
+/// What the deformed ray is made of; its length is that of the world over the deformation's determinant.
+Json deformation_json(const DeformedSignal& signal) {
+  return {{"pieces", signal.chain.pieces.size()},
+          {"arcs", signal.arcs},
+          {"length_error", signal.rate_error},
+          {"certified", signal.is_certified}};
 }
 
 /// The hits of isosurfaces, each with its place in binary64 and what that may be off by.
@@ -312,7 +338,7 @@ class SchemeAnswers {
 }  // namespace
 
 Case CaseReader::read(const JsonReader& json, std::vector<std::string>& warnings) {
-  json.only({"raytruth", "signal", "transfer_function", "emission", "sampling", "schemes"});
+  json.only({"raytruth", "signal", "deformation", "transfer_function", "emission", "sampling", "schemes"});
   check_form(json, "case/1");
   const JsonReader signal = json.at("signal");
   const std::string kind = signal.at("kind").word(names_of(catalogue::signals));
@@ -339,6 +365,11 @@ Case CaseReader::read(const JsonReader& json, std::vector<std::string>& warnings
   ray.emission = read_emission(json);
   // RayIntegral refuses numbers that it cannot calculate with.
   if (ray.transfer) json.at("transfer_function").blame_for([&] { return RayIntegral(*ray.transfer, ray.emission); });
+  const auto deformation = json.find("deformation");
+  if (deformation && kind != "trilinear")
+    deformation->refuse(fmt::format("a deformation of the signal {}", kind), "one of a trilinear signal");
+  if (deformation && !ray.isosurfaces.empty())
+    deformation->refuse("a deformation of isosurfaces", "one of what a transfer function without them shows");
   if (kind == "trilinear")
     read_trilinear(signal, ray, warnings);
   else if (kind == "tricubic")
@@ -359,8 +390,11 @@ void CaseReader::read_trilinear(const JsonReader& json, Case& result, std::vecto
   json.only({"kind", "volume", "repair", "nan", "time_step", "spacing", "border", "origin", "direction", "length"});
   const Ray ray = read_ray(json);
   const Border border = read_border(json);
-  const Grid& grid = read_volume_of(json, warnings);
-  trace(json, TrilinearField(grid, border), ray, result, warnings);
+  const TrilinearField field(read_volume_of(json, warnings), border);
+  if (const auto deformation = result.json.find("deformation"))
+    trace_deformed(json, *deformation, field, ray, result);
+  else
+    trace(json, field, ray, result, warnings);
 }
 
 void CaseReader::read_tricubic(const JsonReader& json, Case& result, std::vector<std::string>& warnings) {
@@ -429,9 +463,10 @@ Json evaluate(const Case& ray) {
         if (ray.transfer) truth = truth_of(ray, signal, hits ? &*hits : nullptr);
         Json schemes = Json::object();
         const bool has_gaps = ray.mesh_ray && ray.mesh_ray->parts.size() > 1;
-        if (hits || has_gaps) {
+        if (hits || has_gaps || ray.deformed) {
+          const std::string_view why = hits ? why_no_surfaces : has_gaps ? why_no_gaps : why_no_deformation;
           for (const std::string& scheme : ray.schemes)
-            if (scheme != "reference") schemes[scheme] = refused(hits ? why_no_surfaces : why_no_gaps);
+            if (scheme != "reference") schemes[scheme] = refused(why);
         } else if (names_a_scheme(ray)) {
           SchemeAnswers answer_of(ray, signal, truth ? &*truth : nullptr);
           for (const std::string& scheme : ray.schemes)
@@ -440,6 +475,7 @@ Json evaluate(const Case& ray) {
         Json answer{{"length", signal.length()}};
         if (ray.border) answer["border"] = name_of(*ray.border);
         if (ray.mesh_ray) answer["parts"] = parts_json(*ray.mesh_ray);
+        if (ray.deformed) answer["deformation"] = deformation_json(*ray.deformed);
         answer["reference"] = truth ? truth_json(*truth) : refused(why_no_integral);
         if (hits) add_hits(std::move(*hits), ray.mesh_ray, answer["reference"]);
         answer["schemes"] = std::move(schemes);

@@ -2,6 +2,7 @@
 
 #include "raytruth/cells/tetrahedral_field.hpp"
 #include "raytruth/core/chain.hpp"
+#include "raytruth/deformation/deformed_ray.hpp"
 #include "raytruth/documents/json/json_reader.hpp"
 #include "raytruth/documents/mesh_source.hpp"
 #include "raytruth/documents/outside_program.hpp"
@@ -41,10 +42,11 @@ struct Case {
   std::variant<PreciseChain<3>, PreciseChain<largest_degree>> precise_signal = {};  ///< where there is no formula
   std::variant<std::monostate, MarschnerLobbRay, AnalyticSignal> formula = {};  ///< that the chain only approximates
   std::vector<Isosurface> isosurfaces = {};
-  Surroundings surroundings = {};             ///< of a ray through a volume
-  std::optional<Border> border = {};          ///< of the volume, if there is one
-  std::optional<MeshRay> mesh_ray = {};       ///< of a ray through tetrahedra
-  std::vector<OutsideProgram> programs = {};  ///< named among the schemes; `evaluate` leaves them out
+  Surroundings surroundings = {};               ///< of a ray through a volume
+  std::optional<Border> border = {};            ///< of the volume, if there is one
+  std::optional<MeshRay> mesh_ray = {};         ///< of a ray through tetrahedra
+  std::optional<DeformedSignal> deformed = {};  ///< of a ray through a deformed volume; `signal` is its chain
+  std::vector<OutsideProgram> programs = {};    ///< named among the schemes; `evaluate` leaves them out
 };
 
 /// Reads cases one after the other; keeps the volume that was read last, for the cases of a list often share it.

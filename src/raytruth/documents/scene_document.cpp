@@ -5,6 +5,7 @@
 #include "raytruth/core/named.hpp"
 #include "raytruth/documents/camera_json.hpp"
 #include "raytruth/documents/case_json.hpp"
+#include "raytruth/documents/deformation_json.hpp"
 #include "raytruth/documents/field_document.hpp"
 #include "raytruth/documents/mesh_source.hpp"
 #include "raytruth/documents/radius_axis_json.hpp"
@@ -17,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string_view>
 #include <variant>
 
@@ -67,7 +69,7 @@ Grid read_voxels(const JsonReader& json, const SceneOptions& options, SceneFile&
 void refuse_volumes_members(const JsonReader& json) {
   for (const std::string_view of_a_volume :
        {"volume", "repair", "nan", "time_step", "spacing", "border", "reconstruction", "table", "shading",
-        "early_termination", "empty_space", "step"})
+        "early_termination", "empty_space", "step", "deformation"})
     if (const auto stated = json.find(of_a_volume))
       stated->refuse(fmt::format("{} beside a mesh", of_a_volume),
                      "a mesh with the reference, or with a scheme and the sampling cells,");
@@ -76,7 +78,7 @@ void refuse_volumes_members(const JsonReader& json) {
 /// The tetrahedra, and the voxel that stands where a scene has a grid.
 void read_mesh(const JsonReader& json, const SceneOptions& options, SceneFile& result) {
   const JsonReader place = json.at("mesh");
-  if (!options.takes_meshes) place.refuse("a mesh", "one where an image is rendered; here a volume");
+  if (!options.only_renders) place.refuse("a mesh", "one where an image is rendered; here a volume");
   SourcedMesh read = read_mesh_source(place, options.volumes);
   result.volume = read.file.empty() ? nlohmann::ordered_json("inline") : nlohmann::ordered_json(read.file);
   result.warnings = std::move(read.warnings);
@@ -282,13 +284,39 @@ void refuse_without_surfaces(const JsonReader& json, const Scene& scene) {
   if (scene.shading) json.at("shading").refuse("light on isosurfaces", "isosurfaces without shading");
 }
 
+/// Refuses what does not follow the rays of a deformed volume.
+void refuse_with_deformation(const JsonReader& json, const Scene& scene) {
+  if (scene.scheme != "reference")
+    json.at("scheme").refuse(fmt::format("{} of a deformed volume", scene.scheme), "the scheme reference");
+  if (scene.shading) json.at("shading").refuse("light on a deformed volume", "a deformation without shading");
+  if (scene.field != FieldKind::trilinear)
+    json.at("reconstruction").refuse("tricubic reconstruction of a deformed volume", "trilinear");
+}
+
 }  // namespace
 
 SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   check_form(json, "scene/1");
-  json.only({"raytruth", "volume", "mesh", "repair", "nan", "time_step", "spacing", "border", "reconstruction",
-             "transfer_function", "emission", "camera", "scheme", "sampling", "step", "shading", "table",
-             "early_termination", "empty_space"});
+  json.only({"raytruth",
+             "volume",
+             "mesh",
+             "repair",
+             "nan",
+             "time_step",
+             "spacing",
+             "border",
+             "reconstruction",
+             "transfer_function",
+             "emission",
+             "camera",
+             "scheme",
+             "sampling",
+             "step",
+             "shading",
+             "table",
+             "early_termination",
+             "empty_space",
+             "deformation"});
   if (json.find("mesh")) refuse_volumes_members(json);
   std::optional<OutsideProgram> program;
   if (is_outside_program(json.at("scheme"))) program = read_outside_program(json.at("scheme"));
@@ -311,6 +339,14 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
     read_mesh(json, options, result);
   else
     scene.grid = read_voxels(json, options, result);
+  if (const auto deformation = json.find("deformation")) {
+    if (!options.only_renders)
+      deformation->refuse("a deformation", "one where an image is rendered; here a volume as it is");
+    if (result.program) json.at("scheme").refuse("a program with a deformation", "the scheme reference");
+    refuse_with_deformation(json, scene);
+    scene.deformation = std::make_shared<const Deformation>(
+        read_deformation(*deformation, scene.grid, scene.border, scene.grid.spacing));
+  }
   const auto camera = json.find("camera");
   const bool says_more_than_size =
       camera && !(camera->is_object() && camera->json().size() == 1 && camera->find("size"));
@@ -330,6 +366,8 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
   if (!scene.isosurfaces.empty()) refuse_without_surfaces(json, scene);
   if (!scene.isosurfaces.empty() && scene.mesh)
     transfer.refuse("isosurfaces with a mesh", "matter alone, or rays of cases,");
+  if (!scene.isosurfaces.empty() && scene.deformation)
+    json.at("deformation").refuse("a deformation of isosurfaces", "one of what a transfer function without them shows");
   result.transfer_function = std::move(read.description);
   if (scene.shading && scene.transfer.is_linear_in_opacity()) result.transfer_function["lit"] = sampled_opacity;
   // RayIntegral refuses numbers that it cannot calculate with.

@@ -19,7 +19,7 @@ struct SceneOptions {
   VolumeAccess volumes;
   std::optional<std::string> opacity;  ///< file
   bool ignores_gradient_opacity = false;
-  bool takes_meshes = false;  ///< "mesh" in place of "volume"
+  bool only_renders = false;  ///< so that a mesh in place of the volume, and a deformation of it, may be there
 };
 
 /// A scene as its JSON says it; experiments/schemas/scene.json describes it.

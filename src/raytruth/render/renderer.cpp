@@ -79,7 +79,8 @@ PreparedScene::PreparedScene(Scene its_scene)
 struct Renderer::Parts {
   explicit Parts(Scene its_scene) : prepared(std::move(its_scene)), make_renderer(factory_of(prepared)) {
     const Scene& scene = prepared.scene;
-    if (!scene.mesh && scene.covers_camera && scene.scheme == "reference" && !scene.shading)
+    const bool is_straight = !scene.mesh && !scene.deformation;
+    if (is_straight && scene.covers_camera && scene.scheme == "reference" && !scene.shading)
       camera_rounding.emplace(scene.camera, scene.grid.spacing, scene.grid.size, scene.border);
   }
 
@@ -105,9 +106,10 @@ Rendering Renderer::render(const std::function<void(std::size_t, std::size_t)>& 
   if (has_radii) {
     result.radii.resize(result.image.pixels.size());
     result.covers_camera = parts_->camera_rounding.has_value();
-    result.tolerance = !result.is_certified      ? tolerance_of_lit_rays
-                       : parts_->camera_rounding ? tolerance_with_camera
-                                                 : tolerance_of_rays;
+    result.tolerance = !result.is_certified                 ? tolerance_of_lit_rays
+                       : parts_->prepared.scene.deformation ? tolerance_of_deformed_rays
+                       : parts_->camera_rounding            ? tolerance_with_camera
+                                                            : tolerance_of_rays;
   }
   const std::int64_t columns = (width + tile_side - 1) / tile_side;
   const std::int64_t tiles = columns * ((height + tile_side - 1) / tile_side);

@@ -17,9 +17,11 @@ namespace raytruth {
 
 // A pixel of `reference` counts as converged if its radius is no larger than this times max(1, largest colour; for
 // plain emission times the ray's length), of rounded rays, and of rays as the camera means them, whose places binary64
-// cannot hold; of lit ones, estimates, if two quadratures differ by no more on any part of the ray (LitIntegral).
+// cannot hold, and of deformed ones; of lit ones, estimates, if two quadratures differ by no more on any part of the
+// ray (LitIntegral).
 inline constexpr double tolerance_of_rays = 1e-13;
 inline constexpr double tolerance_with_camera = 1e-9;
+inline constexpr double tolerance_of_deformed_rays = 1e-9;
 inline constexpr double tolerance_of_lit_rays = 1e-10;
 
 /// What a renderer makes of a scene.

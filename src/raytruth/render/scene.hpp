@@ -1,5 +1,6 @@
 #pragma once
 
+#include "raytruth/deformation/lattice_proof.hpp"
 #include "raytruth/render/camera.hpp"
 #include "raytruth/schemes/radius_axis.hpp"
 #include "raytruth/shading/gooch.hpp"
@@ -91,6 +92,8 @@ struct Scene {
   /// rounds them. Schemes see rounded rays: what they are off by is told best for these.
   bool covers_camera = false;
   std::vector<Isosurface> isosurfaces = {};  ///< beside the transfer function's matter
+  /// What the volume is seen through; null: nothing. Object coordinates are voxels times the spacing.
+  std::shared_ptr<const Deformation> deformation = {};
 };
 
 }  // namespace raytruth

@@ -13,6 +13,7 @@ namespace raytruth {
 
 extern const Technique cell_march_pixels;
 extern const Technique mesh_pixels;
+extern const Technique deformed_pixels;
 extern const Technique quadratic_gray_table_pixels;
 extern const Technique reference_pixels;
 extern const Technique scheme_pixels;
@@ -27,6 +28,7 @@ extern const Technique table_pixels;
 std::span<const Technique* const> techniques() {
   static constexpr std::array list{
       &mesh_pixels,
+      &deformed_pixels,
       &surface_pixels,
       &shaded_reference_pixels,
       &reference_pixels,
