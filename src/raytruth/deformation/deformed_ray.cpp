@@ -465,7 +465,7 @@ DeformedVolume::DeformedVolume(const Grid& voxels, Border border, const std::arr
           if (power % 3 == 2 || power / 3 % 3 == 2 || power / 9 == 2) sum += cell.powers[power].norm();
         bend = std::max(bend, sum);
       }
-  // Of f_i, whose e_i are no longer than sqrt(2), half of both cells' second derivatives.
+  // Half of both cells' second derivatives of f_i, whose e_i are no longer than sqrt(2).
   curvature_ = 4 * bend;
 }
 

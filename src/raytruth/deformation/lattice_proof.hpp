@@ -21,10 +21,10 @@ struct Deformation {
 /// det DF is positive everywhere: in a part of a cell with the derivative G_0 in its middle and |G - G_0| <= E, by rows
 /// of |G_0^-1| E = n < 1, det G >= det G_0 (1 - n)^3; parts are halved until that is positive, or a middle is not.
 ///
-/// That alone does not keep parts apart which lie far from each other: a bar bent by 400 degrees has a positive
-/// determinant. F is one to one on a block of 3^3 cells if sup |A DF - I| < 1 for a matrix A there; any two cells that
-/// no block holds have convex hulls (of their Bernstein coefficients) in boxes that do not meet, or these are
-/// subdivided. What cannot be proven after six halvings is refused.
+/// A determinant alone does not keep parts apart which lie far from each other: a bar bent by 400 degrees has a
+/// positive determinant. F is one to one on a block of 3^3 cells if sup |A DF - I| < 1 for a matrix A there; any two
+/// cells that no block holds have convex hulls (of their Bernstein coefficients) in boxes that do not meet, or these
+/// are subdivided. What cannot be proven after six halvings is refused.
 LatticeProof proof_of(const Lattice& lattice);
 
 }  // namespace raytruth
