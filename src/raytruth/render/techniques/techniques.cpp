@@ -20,22 +20,16 @@ extern const Technique shaded_pixels;
 extern const Technique shaded_reference_pixels;
 extern const Technique shaded_table_pixels;
 extern const Technique surface_pixels;
+extern const Technique surface_scheme_pixels;
 extern const Technique table_march_pixels;
 extern const Technique table_pixels;
 
 std::span<const Technique* const> techniques() {
   static constexpr std::array list{
-      &surface_pixels,
-      &shaded_reference_pixels,
-      &reference_pixels,
-      &quadratic_gray_table_pixels,
-      &second_order_table_pixels,
-      &shaded_table_pixels,
-      &table_march_pixels,
-      &table_pixels,
-      &shaded_pixels,
-      &cell_march_pixels,
-      &scheme_pixels,
+      &surface_pixels,      &surface_scheme_pixels,       &shaded_reference_pixels,
+      &reference_pixels,    &quadratic_gray_table_pixels, &second_order_table_pixels,
+      &shaded_table_pixels, &table_march_pixels,          &table_pixels,
+      &shaded_pixels,       &cell_march_pixels,           &scheme_pixels,
   };
   return list;
 }
