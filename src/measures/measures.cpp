@@ -23,6 +23,7 @@ extern const Measure gooch_tones_measure;
 extern const Measure gradient_angles_measure;
 extern const Measure images_measure;
 extern const Measure integral_orders_measure;
+extern const Measure isosurface_misses_measure;
 extern const Measure iterations_measure;
 extern const Measure minmax_bounds_measure;
 extern const Measure mirrored_gradient_measure;
@@ -65,6 +66,7 @@ std::span<const Measure* const> measures() {
       &advise_holds_measure,
       &cell_cubic_measure,
       &turning_points_measure,
+      &isosurface_misses_measure,
       &quadratic_gray_fit_measure,
       &cubic_splitting_measure,
       &orders_measure,
