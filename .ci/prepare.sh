@@ -10,6 +10,8 @@ packages_to_experiment=(python3-matplotlib mricron-data)
 packages_to_test=(libbenchmark-dev libgl1-mesa-dri libgsl-dev libgtest-dev glslang-tools python3-jsonschema python3-skimage)
 # The Python module: where they are missing it is left out, with a message.
 packages_of_python=(libpython3-dev pybind11-dev python3-numpy)
+# The target `explorer`, which makes plots/explorer.html anew. Nothing here installs them: they take 1 GB.
+packages_to_explore=(emscripten ninja-build nodejs)
 packages_to_tidy=(clang-tidy-16)
 # Engines that start shards, by experiments/launch. Nothing here installs them: tests of those that are absent are skipped.
 packages_to_launch=(munge openmpi-bin parallel slurm-wlm)

@@ -50,6 +50,12 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+if(TARGET raytruth_python) # its file's name says for which Python it is
+  math(EXPR next "${Python_VERSION_MINOR} + 1")
+  set(python_versions ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR} ${Python_VERSION_MAJOR}.${next})
+  list(JOIN python_versions "), python3 (<< " python_versions)
+  set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3 (>= ${python_versions})")
+endif()
 # Plots; a volume that is always at hand; what programs that use the library include.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-matplotlib, python3-numpy, mricron-data")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS

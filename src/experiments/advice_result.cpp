@@ -2,6 +2,7 @@
 
 #include "experiments/columns.hpp"
 #include "experiments/result.hpp"
+#include "raytruth/documents/camera_json.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -20,6 +21,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kind_of(ErrorKind kind) { return error_kind_names[static_cast<std::size_t>(kind)]; }
+
+/// Fewer rays that see anything are too few to tell what keeps an error.
+constexpr std::int64_t few_rays = 64;
 
 std::string_view words_of(ErrorKind kind) {
   constexpr std::array<std::string_view, 3> words{"RMSE of colours", "largest error of a colour",
@@ -98,17 +102,7 @@ Json way_json(const std::vector<Way>& ways, std::optional<std::size_t> which) {
   return which ? to_json(row_of(way_columns(), ways[*which])) : Json();
 }
 
-Json camera_json(const Camera& camera) {
-  Json json{{"eye", camera.eye}, {"target", camera.target}, {"up", camera.up}};
-  if (const auto* const perspective = std::get_if<Perspective>(&camera.projection))
-    json["fov_y"] = perspective->fov_y;
-  else
-    json["height"] = std::get<Orthographic>(camera.projection).height;
-  json["size"] = camera.size;
-  return json;
-}
-
-/// Of the ways without what is refused, a curve for each method, and the error that is asked for.
+/// A curve for each method, without the ways that are refused, and the error that is asked for.
 Json plot_json(const AdviceRequest& request) {
   return {{"title", "What keeps the error, and what it costs"},
           {"note", fmt::format("asked for: {} of at most {}", words_of(request.kind), request.error)},
@@ -174,6 +168,7 @@ Json advice_result(const AdviceDocument& asked, const Advice& advice) {
             {advice.best ? "next_cheaper" : "closest", way_json(advice.ways, advice.next_cheaper)},
             {"settled", advice.is_settled},
             {"rays", advice.rays},
+            {"rays_with_matter", advice.rays_with_matter},
             {"pixels", advice.pixels},
             {"truth", {{"certified", advice.is_certified}, {"radius_max", advice.truth_radius}}},
             {"volume", asked.volume},
@@ -201,7 +196,11 @@ std::string advice_text(const AdviceDocument& asked, const Advice& advice) {
   else
     text += "take            nothing that was tried keeps it: ask for a larger error, or see what comes closest\n";
   if (advice.next_cheaper) text += line(advice.best ? "next cheaper" : "closest", advice.ways[*advice.next_cheaper]);
-  if (!advice.is_settled) text += "not settled     a cheaper way may keep it too: --rays allows more to be looked at\n";
+  if (!advice.best && advice.rays_with_matter < few_rays)
+    text += fmt::format("too little seen {} of the pixels that were looked at see anything: --rays allows more\n",
+                        advice.rays_with_matter);
+  else if (!advice.is_settled)
+    text += "not settled     a cheaper way may keep it too: --rays allows more to be looked at\n";
 
   text += fmt::format("\n{:>9}  {:>9}  {:>9}  {:<10}  {}\n", "reads", "error", "at most", "standing", "way");
   double least = std::numeric_limits<double>::infinity();

@@ -12,7 +12,7 @@ namespace raytruth {
 /// draws error against cost; "advice" holds the best and the next cheaper one, and how far they are to be trusted.
 nlohmann::ordered_json advice_result(const AdviceDocument& asked, const Advice& advice);
 
-/// The same for a terminal: what to take, what the next cheaper way would cost, and a line for every way that matters.
+/// Advice for a terminal: what to take, what the next cheaper way would cost, and a line for every way that matters.
 std::string advice_text(const AdviceDocument& asked, const Advice& advice);
 
 }  // namespace raytruth

@@ -8,7 +8,7 @@
 
 namespace raytruth {
 
-/// Of what there are lists: "schemes", "experiments", "volumes" and so on.
+/// The kinds of which there are lists: "schemes", "experiments", "volumes" and so on.
 const std::vector<std::string>& listed_kinds();
 
 /// What there is of a kind, by name, each with a `summary` and what else is known of it. `folders` are those in which

@@ -91,8 +91,10 @@ const Command advise_command{
         "exceed the error. Cost: reads of the volume and of the transfer function or the table for a pixel, then the\n"
         "table's bytes. Steps are in smallest spacings, errors those of colours in linear light.\n"
         "\n"
-        "`invisible`: no colour, encoded as sRGB, is off by more than half a step of 8 bits. The largest error of all\n"
-        "pixels is estimated by the tail of those that were looked at.\n"
+        "`invisible`: no colour, encoded as sRGB, is off by more than half a step of 8 bits. For a largest error half "
+        "of\n"
+        "the rays goes to the neighbours of the worst pixels, uphill until nothing worse is found; what stands where\n"
+        "neither chance nor that search came is estimated by the tail of the errors, not bounded.\n"
         "\n"
         "Ends with 1 where nothing that was tried keeps the error.",
     .describe = describe};

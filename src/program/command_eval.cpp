@@ -1,6 +1,6 @@
+#include "experiments/evaluate.hpp"
 #include "experiments/output.hpp"
 #include "program/command.hpp"
-#include "raytruth/documents/evaluate.hpp"
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>

@@ -43,10 +43,12 @@ double read_share(const std::string& text) {
   return percent / 100;
 }
 
-/// The file, or the experiment's in the folder, that the result goes to. No part is overwritten.
+/// The file, or the experiment's in the folder, that the result goes to: a name without an extension is a folder's,
+/// which is made. No part is overwritten.
 std::filesystem::path result_file(const MergeOptions& options, const Merged& merged) {
   std::filesystem::path file = options.result;
   std::error_code ignored;
+  if (!file.has_extension() && !std::filesystem::exists(file, ignored)) make_folder(file);
   if (std::filesystem::is_directory(file, ignored)) file /= merged.experiment->name + ".json";
   for (const std::string& part : merged.parts)
     if (std::filesystem::equivalent(part, file, ignored))
@@ -75,7 +77,8 @@ int merge(const MergeOptions& options) {
 std::function<int()> describe(CommandOptions& add) {
   const auto options = std::make_shared<MergeOptions>();
   add.operands("part", options->places, "Parts that `raytruth run --shard` made, and folders of them");
-  add.required_text("-o", "RESULT", options->result, "Write the result to this file, or as NAME.json into this folder");
+  add.required_text("-o", "RESULT", options->result,
+                    "Write the result to this file, or as NAME.json into this folder (a name without extension)");
   add.text("--recheck", "P%", options->recheck,
            "Do so many percent of the units again, at least one, chosen at random");
   add.flag("--mixed-cpus", options->mixed_cpus,

@@ -1,6 +1,7 @@
 #include "python/documents.hpp"
 
 #include "experiments/advice_result.hpp"
+#include "experiments/evaluate.hpp"
 #include "experiments/experiment_folder.hpp"
 #include "experiments/listing.hpp"
 #include "experiments/output.hpp"
@@ -12,7 +13,6 @@
 #include "raytruth/core/named.hpp"
 #include "raytruth/documents/conformance/score_document.hpp"
 #include "raytruth/documents/conformance/vectors.hpp"
-#include "raytruth/documents/evaluate.hpp"
 #include "raytruth/documents/table_case.hpp"
 #include "raytruth/tables/table_file.hpp"
 #include "raytruth/volume/files/find_volume.hpp"

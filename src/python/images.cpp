@@ -120,7 +120,7 @@ Compared image_of_array(const Numbers& array, const std::string& name) {
   return found;
 }
 
-/// Of a rendered image, an array, or a file of linear light.
+/// Reads a rendered image, an array, or a file of linear light.
 Compared compared_of(py::handle given, const std::string& name) {
   if (py::isinstance<PythonImage>(given)) return image_of_array(given.cast<const PythonImage&>().pixels, name);
   if (py::isinstance<py::str>(given) || py::hasattr(given, "__fspath__")) {

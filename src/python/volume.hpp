@@ -18,7 +18,7 @@ class Volume {
  public:
   Volume(std::shared_ptr<const Grid> grid, std::string name) : grid_(std::move(grid)), name_(std::move(name)) {}
 
-  /// Of an array of three axes of any real type, indexed [z, y, x], or [x, y, z] if `order` is "xyz". Throws
+  /// Copies an array of three axes of any real type, indexed [z, y, x], or [x, y, z] if `order` is "xyz". Throws
   /// InputError.
   static Volume from_array(const pybind11::array& array, const std::array<double, 3>& spacing, const std::string& order,
                            std::optional<double> nan, const std::string& name);

@@ -3,6 +3,7 @@
 
 #include "paired.hpp"
 #include "raytruth/reference/ray_truth.hpp"
+#include "raytruth/signals/piecewise_polynomial.hpp"
 #include "raytruth/signals/random_field.hpp"
 #include "raytruth/signals/ray_ensemble.hpp"
 #include "raytruth/signals/ray_field.hpp"
@@ -54,7 +55,8 @@ struct Python {
     py::list s;
     py::list extinctions;
     py::list colors;
-    for (const TransferPoint& point : transfer().points()) {
+    const PiecewiseLinear stated = transfer();
+    for (const TransferPoint& point : stated.points()) {
       s.append(point.s);
       extinctions.append(point.optics.extinction);
       colors.append(py::make_tuple(point.optics.color[0], point.optics.color[1], point.optics.color[2]));
@@ -145,12 +147,13 @@ void small_call(benchmark::State& state) {
   const auto by_python = [&] {
     for (int i = 0; i < calls; ++i) benchmark::DoNotOptimize(call(py.signal, py.function));
   };
-  Chain<3> chain;
-  chain.pieces.push_back({0.0, 1.0, {{0.3, 0.3 + 0.1 / 3, 0.3 + 0.2 / 3, 0.4}}});
-  chain.end = 1;
+  const std::vector<double> breaks{0, 1};
+  const std::vector<std::vector<double>> coefficients{{0.3, 0.1}};
+  const auto chain = piecewise_polynomial(breaks, coefficients);
+  const SignalError error = piecewise_polynomial_error(breaks, coefficients, chain);
   RayIntegral integral(transfer(), Emission::associated);
   const auto by_library = [&] {
-    for (int i = 0; i < calls; ++i) benchmark::DoNotOptimize(integral(chain));
+    for (int i = 0; i < calls; ++i) benchmark::DoNotOptimize(integral(chain, error));
   };
   run_in_turn(state, by_python, by_library);
   state.counters["microseconds_of_a_call"] =

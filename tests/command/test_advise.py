@@ -48,6 +48,15 @@ class AdviseTest(ProgramTest):
         self.assertLess(cheap["reads"], dear["reads"])
         self.assert_promise_holds(self.advise("--error", "0.005", "--of", "largest"), lambda difference: numpy.abs(difference).max())
 
+    def test_the_largest_error_is_found_though_few_pixels_are_looked_at(self):
+        camera = {**SCENE["camera"], "size": [160, 128]}
+        scene = {**SCENE, "camera": camera}
+        advice = self.advise("--error", "0.01", "--of", "largest", "--rays", "4096", scene=scene)["advice"]
+        self.assertLess(advice["rays"], advice["pixels"] / 4)
+        best = advice["best"]
+        difference = self.image(camera=camera, scheme=best["scheme"], step=best["step"]) - self.image(camera=camera, scheme="reference")
+        self.assertAlmostEqual(numpy.abs(difference).max(), best["error_low"], delta=1e-12)
+
     def test_the_best_is_the_cheapest_that_keeps_the_error(self):
         result = self.advise("--error", "0.002")
         advice = result["advice"]
@@ -79,6 +88,12 @@ class AdviseTest(ProgramTest):
         result = self.advise("--error", "0.05", scene=lit)
         self.assertFalse(result["advice"]["truth"]["certified"])
         self.assertEqual(result["advice"]["best"]["scheme"], "order1")
+        large = {**lit, "camera": {**lit["camera"], "size": [80, 80]}}
+        sampled = self.advise("--error", "0.05", scene=large)["advice"]
+        self.assertLess(sampled["rays"], sampled["pixels"])
+        self.assertEqual(sampled["best"]["scheme"], "order1")
+        dear = self.advise("--error", "0.015", scene=lit)["advice"]
+        self.assertLess(dear["next_cheaper"]["reads"], dear["best"]["reads"])
 
     def test_nothing_may_keep_an_error(self):
         result = self.advise("--error", "1e-18", code=1)
@@ -120,6 +135,9 @@ class AdviseTest(ProgramTest):
             ([], "--error"),
         ):
             self.assert_refused(self.run_program("advise", "scene.json", *options), words)
+        surfaces = {**SCENE, "transfer_function": {"points": POINTS, "isosurfaces": [{"s": 0.5, "opacity": 0.5, "color": [1, 1, 1]}]}}
+        self.write("surfaces.json", json.dumps(surfaces))
+        self.assert_refused(self.run_program("advise", "surfaces.json", "--error", "0.1"), "isosurfaces")
         self.write("away.json", json.dumps({**SCENE, "camera": {**SCENE["camera"], "target": [500, -300, 30]}}))
         done = self.run_program("advise", "away.json", "--error", "0.1")
         self.assertEqual(done.returncode, 2)

@@ -66,8 +66,8 @@ class Folders(unittest.TestCase):
                 self.assertTrue((SOURCE / "src" / name).is_file(), f"{path}: {name}")
 
     def test_targets_stand_on_top_of_each_other(self):
-        """The library knows no documents, documents no experiments, experiments no program."""
-        floors = ["raytruth/", "raytruth/documents/", ("experiments/", "measures/"), "program/"]
+        """The library knows no documents, documents no experiments, experiments no program, no Python module, no page."""
+        floors = ["raytruth/", "raytruth/documents/", ("experiments/", "measures/"), ("program/", "python/", "explorer/")]
 
         def floor(name):
             return max(i for i, prefix in enumerate(floors) if name.startswith(prefix))

@@ -95,7 +95,7 @@ class Architecture(unittest.TestCase):
     def test_rooms_are_the_folders(self):
         text = text_of(SOURCE / "src" / "README.md")
         named = set(re.findall(r"`(src/[\w/]+)`", text.split("\n| folder |")[1].split("\n\n")[0]))
-        folders = {SOURCE / "src" / name for name in ("cmake", "experiments", "measures", "program", "raytruth")}
+        folders = {SOURCE / "src" / name for name in ("cmake", "experiments", "explorer", "measures", "program", "python", "raytruth")}
         folders |= {file.parent for file in (SOURCE / "src" / "raytruth").rglob("*.hpp")}
         folders |= {file.parent for file in (SOURCE / "src" / "measures").rglob("*.cpp")}
         self.assertEqual(named, {str(folder.relative_to(SOURCE)) for folder in folders})

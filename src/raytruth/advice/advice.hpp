@@ -60,6 +60,7 @@ struct Advice {
   std::optional<std::size_t> next_cheaper = {};  ///< of those that cost less the one with the smallest error
   bool is_settled = false;                       ///< whether all that cost less are known to exceed the error
   std::int64_t rays = 0;                         ///< that were looked at, of `pixels` of all views
+  std::int64_t rays_with_matter = 0;             ///< of these, along which there is something to see
   std::int64_t pixels = 0;
   bool is_certified = false;  ///< the truth that errors are against; of lit scenes it is an estimate
   double truth_radius = 0;    ///< the largest of its rays
@@ -71,9 +72,12 @@ struct Advice {
 ///
 /// All pixels of the views are looked at where they are few (4096). Otherwise each is as likely to be as every other:
 /// an image is divided into equal parts, in each of which chance takes one pixel, in rounds that double the rays until
-/// every way cheaper than the best is decided, or `most_rays` are spent. Tables are tried at the longest steps at which
-/// exact slabs keep the error, from the smallest up to that which is no better than the one before. Errors are those of
-/// the same rays against the reference. Equal requests give equal advice.
+/// every way cheaper than the best is decided, or `most_rays` are spent. Nothing is promised before 64 rays have seen
+/// matter, and 256 are asked for. A largest error stands at edges that few rays meet: for it half of the rays is taken
+/// so, and the others look at the neighbours of the best way's worst pixels in turn, until nothing worse is found.
+/// Tables are tried at the longest steps at which exact slabs keep the error, from the smallest up to that which is no
+/// better than the one before. Errors are those of the same rays against the reference. Equal requests give equal
+/// advice.
 ///
 /// `progress(done, of)` is told after each way. Throws InputError where no pixel sees the volume.
 Advice advise(const AdviceRequest& request, const std::function<void(std::size_t, std::size_t)>& progress = {});

@@ -10,25 +10,28 @@ namespace raytruth {
 
 namespace {
 
-/// The index of the tail above the k-th largest of descending errors, and the mean of ln(x_i / x_k).
+/// The index of the tail above the k-th largest of descending errors, and the means of ln(x_i / x_k) and x_i - x_k.
 struct Tail {
   double index = 0;
   double mean_log = 0;
+  double mean_excess = 0;
 };
 
 Tail tail_of(const std::vector<double>& descending, std::size_t k) {
   double first = 0;
   double second = 0;
+  double excess = 0;
   for (std::size_t i = 0; i < k; ++i) {
     const double log = std::log(descending[i] / descending[k]);
     first += log;
     second += log * log;
+    excess += (descending[i] - descending[k]) / static_cast<double>(k);
   }
   first /= static_cast<double>(k);
   second /= static_cast<double>(k);
-  if (!(second > first * first)) return {-1, first};
+  if (!(second > first * first)) return {-1, first, excess};
   const double index = first + 1 - 0.5 / (1 - first * first / second);
-  return {std::clamp(index, -1.0, 1.0), first};
+  return {std::clamp(index, -1.0, 1.0), first, excess};
 }
 
 }  // namespace
@@ -55,7 +58,7 @@ ErrorEstimate error_of_all(ErrorKind kind, const std::vector<double>& errors) {
   return {error, error, error};
 }
 
-ErrorEstimate largest_of_sample(std::vector<double> errors, double population) {
+ErrorEstimate largest_of_sample(std::vector<double> errors, double population, double confidence) {
   if (errors.empty()) return {};
   std::sort(errors.begin(), errors.end(), std::greater<>());
   const auto n = static_cast<double>(errors.size());
@@ -65,13 +68,23 @@ ErrorEstimate largest_of_sample(std::vector<double> errors, double population) {
   constexpr double margin = 0.1;
   const double least = seen * (1 + margin * std::log10(10 * unseen));
   constexpr std::size_t fewest = 10;
-  const std::size_t k = std::max(fewest, errors.size() / 20);
+  const std::size_t k = std::max(fewest, errors.size() / 10);
   if (errors.size() <= k || !(errors[k] > 0)) return {seen, seen, least};
   const Tail tail = tail_of(errors, k);
-  const double beyond = std::log(static_cast<double>(k) * unseen);
-  const double growth = std::abs(tail.index) < 1e-6 ? beyond : std::expm1(tail.index * beyond) / tail.index;
-  const double extreme = errors[k] * (1 + tail.mean_log * (1 - std::min(tail.index, 0.0)) * growth);
-  return {std::max(seen, extreme), seen, std::max(least, extreme)};
+  const auto extreme = [&](double share) {
+    const double beyond = std::log(static_cast<double>(k) * unseen / share);
+    const double growth = std::abs(tail.index) < 1e-6 ? beyond : std::expm1(tail.index * beyond) / tail.index;
+    return errors[k] +
+           std::max(errors[k] * tail.mean_log * (1 - std::min(tail.index, 0.0)) * growth, tail.mean_excess * beyond);
+  };
+  // The tail of an image is none that is known: what one part of it does, another part may not tell.
+  constexpr double unknown_tail = 1.5;
+  return {std::max(seen, extreme(1)), seen, unknown_tail * std::max(least, extreme(1 - confidence))};
+}
+
+ErrorEstimate and_at_least(ErrorEstimate estimate, double found) {
+  constexpr double margin = 1.1;
+  return {std::max(estimate.value, found), std::max(estimate.low, found), std::max(estimate.high, margin * found)};
 }
 
 }  // namespace raytruth

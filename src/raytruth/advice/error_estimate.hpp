@@ -31,12 +31,20 @@ ErrorEstimate error_of_all(ErrorKind kind, const std::vector<double>& errors);
 /// largest one that was seen is taken, so the bound is no proof. `low` is two standard errors below the mean.
 ErrorEstimate rmse_of_sample(const std::vector<double>& squares, double confidence);
 
-/// The largest of `population` errors of which the sample has some, by the tail of the sample's largest twentieth (A.
+/// The largest of `population` errors of which the sample has some, by the tail of the sample's largest tenth (A.
 /// L. M. Dekkers, J. H. J. Einmahl, L. de Haan, A moment estimator for the index of an extreme-value distribution,
 /// Annals of Statistics 17, 1989): with the index g of the tail, the k-th largest x_k of n, and M1 the mean of ln(x_i /
 /// x_k),
-///     x_k + x_k M1 (1 - min(g, 0)) ((k population / n)^g - 1) / g.
-/// `low` is the largest error of the sample, which is certain; `high` has a margin that grows with what was not seen.
-ErrorEstimate largest_of_sample(std::vector<double> errors, double population);
+///     x(p) = x_k + x_k M1 (1 - min(g, 0)) ((k / (n p))^g - 1) / g
+/// is exceeded with the probability p. An index that comes out too small makes this too near, so what an exponential
+/// tail exceeds with that probability, x_k + ln(k / (n p)) times the mean of x_i - x_k, is taken where it is larger.
+/// `value` is x(1 / population); `high` is half as much again as x((1 - confidence) / population), which the largest
+/// one exceeds with the probability 1 - confidence if the tail is what it is taken for. `low` is the largest error of
+/// the sample, which is certain.
+ErrorEstimate largest_of_sample(std::vector<double> errors, double population, double confidence);
+
+/// The estimate of a largest error of which one as large as `found` was found by a search uphill, not by chance. What
+/// such a search has not found is taken to be no more than a tenth larger.
+ErrorEstimate and_at_least(ErrorEstimate estimate, double found);
 
 }  // namespace raytruth

@@ -114,7 +114,7 @@ struct Bernstein {
   /// Smallest and largest value on [0, 1]: of the end values and of the values where the derivative changes sign.
   [[nodiscard]] std::pair<Real, Real> range() const {
     auto [low, high] = std::minmax(coefficients.front(), coefficients.back());
-    const auto inside = [&](const Real& b) { return low <= b && b <= high; };
+    const auto inside = [low = low, high = high](const Real& b) { return low <= b && b <= high; };
     if (std::all_of(coefficients.begin(), coefficients.end(), inside)) return {low, high};
     std::pair<Real, Real> result{low, high};
     for (const Real& u : derivative().sign_changes()) {

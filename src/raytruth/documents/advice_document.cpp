@@ -48,6 +48,9 @@ AdviceDocument read_advice_document(const JsonReader& json, const AdviceOptions&
   document["scheme"] = "reference";
   SceneFile scene =
       read_scene(JsonReader::from_json(std::move(document), json), {.volumes = options.volumes, .opacity = {}});
+  if (!scene.scene.isosurfaces.empty())
+    json.at("transfer_function")
+        .refuse("isosurfaces, which only the reference renders", "a transfer function without them");
   request.views =
       scene.fitted_camera.is_null()
           ? std::vector{scene.scene.camera}

@@ -1,6 +1,7 @@
 #include "raytruth/documents/outside_image.hpp"
 
 #include "raytruth/core/npy.hpp"
+#include "raytruth/documents/camera_json.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
 #include "raytruth/images/image_file.hpp"
 
@@ -8,23 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include <fstream>
-#include <variant>
 
 namespace raytruth {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json camera_json(const Camera& camera) {
-  Json json{{"eye", camera.eye}, {"target", camera.target}, {"up", camera.up}};
-  if (const auto* const perspective = std::get_if<Perspective>(&camera.projection))
-    json["fov_y"] = perspective->fov_y;
-  else
-    json["height"] = std::get<Orthographic>(camera.projection).height;
-  json["size"] = camera.size;
-  return json;
-}
 
 void write_voxels(const Grid& grid, const std::filesystem::path& file) {
   std::ofstream out(file, std::ios::binary);

@@ -3,6 +3,7 @@
 #include "raytruth/catalogue.hpp"
 #include "raytruth/core/memory_limit.hpp"
 #include "raytruth/core/named.hpp"
+#include "raytruth/documents/camera_json.hpp"
 #include "raytruth/documents/case_json.hpp"
 #include "raytruth/documents/field_document.hpp"
 #include "raytruth/documents/radius_axis_json.hpp"
@@ -81,11 +82,7 @@ Camera fit_camera(const std::optional<JsonReader>& json, SceneFile& result) {
   constexpr std::array<std::int64_t, 2> usual_size{512, 512};
   const Grid& grid = result.scene.grid;
   Camera camera = fitted_camera(grid.size, grid.spacing, json ? read_image_size(json->at("size")) : usual_size);
-  result.fitted_camera = {{"eye", camera.eye},
-                          {"target", camera.target},
-                          {"up", camera.up},
-                          {"fov_y", std::get<Perspective>(camera.projection).fov_y},
-                          {"size", camera.size}};
+  result.fitted_camera = camera_json(camera);
   return camera;
 }
 

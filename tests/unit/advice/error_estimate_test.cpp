@@ -25,14 +25,14 @@ std::vector<double> errors(std::uint64_t seed, std::size_t count, const Error& e
 TEST(ErrorEstimate, RmseOfEqualErrorsIsThatError) {
   const ErrorEstimate estimate = rmse_of_sample(std::vector<double>(1000, 0.25), confidence);
   EXPECT_EQ(estimate.value, 0.5);
-  EXPECT_LT(estimate.low, 0.5);
+  EXPECT_LE(estimate.low, 0.5);
   EXPECT_GT(estimate.high, 0.5);
   EXPECT_LT(estimate.high, 0.52);
 }
 
 TEST(ErrorEstimate, NothingIsKnownOfOneError) {
   EXPECT_EQ(rmse_of_sample({}, confidence).high, 0);
-  EXPECT_EQ(largest_of_sample({}, 10).high, 0);
+  EXPECT_EQ(largest_of_sample({}, 10, confidence).high, 0);
 }
 
 /// Errors with a tail, mostly zero as those of pixels beside an object.
@@ -44,7 +44,7 @@ TEST(ErrorEstimate, BoundsOfTheRmseHoldForMostSamples) {
   for (int i = 0; i < samples; ++i) {
     const ErrorEstimate estimate = rmse_of_sample(errors(static_cast<std::uint64_t>(i), 1000, square), confidence);
     held += estimate.low <= truth && truth <= estimate.high ? 1 : 0;
-    EXPECT_LT(estimate.high, 1.5 * truth);
+    EXPECT_LT(estimate.high, 2 * truth);
   }
   EXPECT_GE(held, 0.95 * samples);
 }
@@ -62,16 +62,28 @@ TEST(ErrorEstimate, TheLargestOfAPopulationIsSeldomBeyondItsBound) {
       const auto all = errors(static_cast<std::uint64_t>(i), population, error);
       const double truth = *std::max_element(all.begin(), all.end());
       const std::vector<double> sample(all.begin(), all.begin() + 1500);
-      const ErrorEstimate estimate = largest_of_sample(sample, population);
+      const ErrorEstimate estimate = largest_of_sample(sample, population, confidence);
       EXPECT_EQ(estimate.low, *std::max_element(sample.begin(), sample.end()));
       held += truth <= estimate.high ? 1 : 0;
     }
     return held;
   };
   EXPECT_GE(check(bounded), 95);
-  // The largest of a population scatters about its estimate where tails have no end: promises are tried by a study.
-  EXPECT_GE(check(exponential), 60);
-  EXPECT_GE(check(heavy), 60);
+  // The index of a tail is itself an estimate, of 150 errors here.
+  EXPECT_GE(check(exponential), 85);
+  EXPECT_GE(check(heavy), 85);
+}
+
+TEST(ErrorEstimate, WhatASearchFoundIsCertain) {
+  const ErrorEstimate larger = and_at_least({.value = 1, .low = 0.5, .high = 3}, 2);
+  EXPECT_EQ(larger.value, 2);
+  EXPECT_EQ(larger.low, 2);
+  EXPECT_EQ(larger.high, 3);
+  EXPECT_GT(and_at_least({.value = 1, .low = 0.5, .high = 3}, 3).high, 3);
+  const ErrorEstimate smaller = and_at_least({.value = 1, .low = 0.5, .high = 3}, 0.25);
+  EXPECT_EQ(smaller.low, 0.5);
+  EXPECT_EQ(smaller.value, 1);
+  EXPECT_EQ(smaller.high, 3);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "raytruth/documents/evaluate.hpp"
+#include "experiments/evaluate.hpp"
 
 #include "raytruth/documents/case.hpp"
 #include "raytruth/documents/conformance/outside_answers.hpp"
