@@ -130,7 +130,7 @@ class HitVectors(ProgramTest):
         name = next(v["id"] for v in self.vectors if v["hits"])
         self.write("hits.json", self.document)
         for text, words in (
-            ("id,hit,t\n", "the header id,hit,t,surface"),
+            ("id,hit,t\n", "found 3 fields; id,hit,t,surface is allowed"),
             (f"id,hit,t,surface\n{name},1,0.5,0\n", "hit 0"),
             (f"id,hit,t,surface\n{name},0,0.5,-1\n", "surface '-1'"),
             (f"id,hit,t,surface\n{name},,,\n{name},0,0.5,0\n", "which has no hits"),

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,24 +25,32 @@ namespace {
 
 struct Options {
   std::vector<double> steps;
-  std::vector<double> shares;  ///< of the data's range, where isosurfaces lie
-  double tolerance = 0;        ///< of the method `threshold`, the same
+  std::vector<std::vector<double>> sets;  ///< of isosurfaces: where they lie, shares of the data's range
+  double tolerance = 0;                   ///< of the method `threshold`, the same
 };
 
 Options read_options(const Experiment& /*experiment*/, const JsonReader& json) {
-  json.only({"kind", "steps", "shares", "tolerance"});
+  json.only({"kind", "steps", "isosurfaces", "tolerance"});
   constexpr double smallest_step = 1.0 / 256;
   constexpr double largest_step = 16;
-  Options options{.steps = {}, .shares = {}, .tolerance = json.at("tolerance").number(0, 1)};
+  Options options{.steps = {}, .sets = {}, .tolerance = json.at("tolerance").number(0, 1)};
   for (const JsonReader& step : json.at("steps").items()) {
     options.steps.push_back(step.number(smallest_step, largest_step));
     if (options.steps.size() > 1 && !(options.steps.back() < options.steps[options.steps.size() - 2]))
       step.refuse_value("a step below the one before");
   }
-  for (const JsonReader& share : json.at("shares").items()) {
-    options.shares.push_back(share.number(0, 1));
-    if (options.shares.size() > 1 && !(options.shares.back() > options.shares[options.shares.size() - 2]))
-      share.refuse_value("a share above the one before");
+  for (const JsonReader& set : json.at("isosurfaces").items()) {
+    std::vector<double>& shares = options.sets.emplace_back();
+    for (const JsonReader& share : set.items()) {
+      shares.push_back(share.number(0, 1));
+      if (shares.size() > 1 && !(shares.back() > shares[shares.size() - 2]))
+        share.refuse_value("a share above the one before");
+    }
+    const auto is_as_large = [&](const std::vector<double>& other) {
+      return &other != &shares && other.size() == shares.size();
+    };
+    if (std::any_of(options.sets.begin(), options.sets.end(), is_as_large))
+      set.refuse_value("as many isosurfaces as no set before has");
   }
   return options;
 }
@@ -103,7 +112,7 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
   Columns<Record> list{
       {.name = "method", .description = "of `raytruth list surfaces`", .is_key = true, .cell = &Record::method},
       {.name = "surfaces",
-       .description = "isosurfaces at the stated shares of the data's range",
+       .description = "isosurfaces of the set at shares of the data's range",
        .is_key = true,
        .cell = &Record::surfaces},
       {.name = "step", .unit = "voxel", .description = "between samples", .is_key = true, .cell = &Record::step},
@@ -176,12 +185,9 @@ std::optional<double> order_between(const Record& before, const Record& here) {
          std::log(before.step / here.step);
 }
 
-std::vector<Record> records_of_field(const Experiment& experiment, const Options& options, const Field& field) {
+std::vector<Record> records_of_set(const Experiment& experiment, const Options& options, const Field& field,
+                                   const std::vector<double>& scalars) {
   const TrilinearField traced(field.grid);
-  const auto [low, high] = field.data_range;
-  std::vector<double> scalars;
-  for (const double share : options.shares) scalars.push_back(low + share * (high - low));
-  const double tolerance = options.tolerance * (high - low);
   std::vector<SurfaceScheme> methods = catalogue::surface_schemes();
   std::erase_if(methods, [](const SurfaceScheme& scheme) { return scheme.isoslab.has_value(); });
   const std::size_t kinds = methods.size() * options.steps.size();
@@ -206,7 +212,7 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
         for (std::size_t method = 0; method < methods.size(); ++method) {
           const SurfaceMethod how = methods[method].method;
           rays[method * options.steps.size() + step][i] =
-              missed_of(truth.hits, sampled_hits(how, signal, samples, scalars, tolerance), samples, how);
+              missed_of(truth.hits, sampled_hits(how, signal, samples, scalars, options.tolerance), samples, how);
         }
       }
     }
@@ -225,9 +231,21 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
   return records;
 }
 
+std::vector<Record> records_of_field(const Experiment& experiment, const Options& options, const Field& field) {
+  std::vector<Record> records;
+  for (const std::vector<double>& shares : options.sets) {
+    // A field's values are shares of its range.
+    std::vector<Record> of_set = records_of_set(experiment, options, field, shares);
+    records.insert(records.end(), std::make_move_iterator(of_set.begin()), std::make_move_iterator(of_set.end()));
+  }
+  return records;
+}
+
 }  // namespace
 
 extern const Measure isosurface_misses_measure;
+// Of a smooth signal the pairs of crossings that a step h holds become rarer as h^2, for what rises above a scalar
+// between two samples is as high as h^2; of a trilinear one as h, since it has kinks, at which it is as high as h.
 const Measure isosurface_misses_measure{
     MeasureDefinition<Options, Record>{.name = "isosurface_misses",
                                        .summary = "crossings of isosurfaces that samples lose, and hits that are none",

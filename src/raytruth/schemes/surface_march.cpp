@@ -22,6 +22,17 @@ void put_behind(const Vec4& next, SurfaceOutcome& outcome) {
 
 }  // namespace
 
+Vector3<double> normal_of(const SurfaceScheme& scheme, const SampledHit& hit, const Samples<double>& samples,
+                          const std::function<Vector3<double>(double t)>& normal_at) {
+  if (!scheme.interpolates_normals) return normal_at(hit.normal_t);
+  const auto begin = static_cast<double>(samples.positions[hit.interval]);
+  const auto end = static_cast<double>(samples.positions[hit.interval + 1]);
+  const Vector3<double> front = normal_at(begin);
+  const Vector3<double> normal = front + (hit.normal_t - begin) / (end - begin) * (normal_at(end) - front);
+  const double norm = normal.matrix().norm();
+  return norm == 0 ? normal : Vector3<double>(normal / norm);
+}
+
 SurfaceMarch::SurfaceMarch(const PiecewiseLinear& transfer, Emission emission, std::vector<Isosurface> isosurfaces)
     : look_up_(transfer, emission), matter_(transfer, emission), isosurfaces_(std::move(isosurfaces)) {
   check(isosurfaces_);

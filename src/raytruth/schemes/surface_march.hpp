@@ -21,6 +21,11 @@ struct SurfaceOutcome : Outcome<> {
   std::vector<SampledHit> hits;  ///< in the order in which they are met
 };
 
+/// The unit normal that lights a hit, zero where there is none: that of the place `normal_t`, or, of a scheme that
+/// interpolates normals, on the line between those of the samples around it, normalised. `normal_at(t)`: unit or zero.
+Vector3<double> normal_of(const SurfaceScheme& scheme, const SampledHit& hit, const Samples<double>& samples,
+                          const std::function<Vector3<double>(double t)>& normal_at);
+
 /// The light of matter and isosurfaces by the schemes of `catalogue::surface_schemes`, front to back: at each hit
 ///
 ///     C += T opacity color,  T *= 1 - opacity,

@@ -144,24 +144,15 @@ class SurfaceSchemePixels {
     take_samples(chain_, scene_.step, samples_);
     if (!gradient_) return {march_(scheme_, chain_, samples_, scene_.surface_tolerance).rgba()};
     const LitView view(*gradient_, scene_.border, *scene_.shading, pixel);
+    const auto normal_at = [&view](double t) { return view.normal_at(t); };
     const auto color_of = [&](const SampledHit& hit) {
-      return lit_color(scene_.isosurfaces[hit.surface], normal_of(hit, view), view, *scene_.shading);
+      return lit_color(scene_.isosurfaces[hit.surface], normal_of(scheme_, hit, samples_, normal_at), view,
+                       *scene_.shading);
     };
     return {march_(scheme_, chain_, samples_, scene_.surface_tolerance, color_of).rgba()};
   }
 
  private:
-  [[nodiscard]] Vector3<double> normal_of(const SampledHit& hit, const LitView& view) const {
-    if (!scheme_.interpolates_normals) return view.normal_at(hit.normal_t);
-    const auto begin = static_cast<double>(samples_.positions[hit.interval]);
-    const auto end = static_cast<double>(samples_.positions[hit.interval + 1]);
-    const Vector3<double> front = view.normal_at(begin);
-    const Vector3<double> back = view.normal_at(end);
-    const Vector3<double> normal = front + (hit.normal_t - begin) / (end - begin) * (back - front);
-    const double norm = normal.matrix().norm();
-    return norm == 0 ? normal : Vector3<double>(normal / norm);
-  }
-
   const Field& field_;
   const Scene& scene_;
   const SurfaceScheme& scheme_;
