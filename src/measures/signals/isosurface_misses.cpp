@@ -244,8 +244,8 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
 }  // namespace
 
 extern const Measure isosurface_misses_measure;
-// Of a smooth signal the pairs of crossings that a step h holds become rarer as h^2, for what rises above a scalar
-// between two samples is as high as h^2; of a trilinear one as h, since it has kinks, at which it is as high as h.
+// Pairs of crossings that a step h holds become rarer as h^2 along a smooth signal, since what rises above a scalar
+// between two samples is as high as h^2; along a trilinear one as h, since it has kinks, at which that is as high as h.
 const Measure isosurface_misses_measure{
     MeasureDefinition<Options, Record>{.name = "isosurface_misses",
                                        .summary = "crossings of isosurfaces that samples lose, and hits that are none",
