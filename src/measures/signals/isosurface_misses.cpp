@@ -131,7 +131,9 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
          if (record.crossings == 0) return {};
          return static_cast<double>(record.lost) / static_cast<double>(record.crossings);
        }},
-      {.name = "false_hits", .description = "hits without such a crossing", .cell = &Record::false_hits},
+      {.name = "false_hits",
+       .description = "hits without such a crossing; of one_per_step those that lag behind, whose crossings are lost",
+       .cell = &Record::false_hits},
       {.name = "loss_order",
        .description = "log of the ratio of crossings lost at the step before to those lost here, over the log of the "
                       "ratio of steps; none where either is 0, and at the first step",
