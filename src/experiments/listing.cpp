@@ -84,7 +84,7 @@ Json tables_json() {
 }  // namespace
 
 const std::vector<std::string>& listed_kinds() {
-  static const std::vector<std::string> kinds{"signals",  "fields",   "transfers", "samplings",   "schemes",
+  static const std::vector<std::string> kinds{"signals",  "fields",   "transfers", "samplings",   "schemes", "surfaces",
                                               "measures", "shadings", "tables",    "experiments", "volumes"};
   return kinds;
 }
@@ -95,6 +95,7 @@ Json list_of(const std::string& kind, const std::vector<std::filesystem::path>& 
   if (kind == "transfers") return entries_json(catalogue::transfers);
   if (kind == "samplings") return entries_json(catalogue::samplings);
   if (kind == "schemes") return schemes_json();
+  if (kind == "surfaces") return entries_json(catalogue::surface_schemes());
   if (kind == "measures") return entries_json(measures());
   if (kind == "shadings") return entries_json(catalogue::shadings());
   if (kind == "tables") return tables_json();

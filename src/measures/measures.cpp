@@ -25,6 +25,10 @@ extern const Measure gooch_tones_measure;
 extern const Measure gradient_angles_measure;
 extern const Measure images_measure;
 extern const Measure integral_orders_measure;
+extern const Measure isosurface_images_measure;
+extern const Measure isosurface_jumps_measure;
+extern const Measure isosurface_limit_measure;
+extern const Measure isosurface_misses_measure;
 extern const Measure iterations_measure;
 extern const Measure minmax_bounds_measure;
 extern const Measure mirrored_gradient_measure;
@@ -68,6 +72,9 @@ std::span<const Measure* const> measures() {
       &advise_holds_measure,
       &cell_cubic_measure,
       &turning_points_measure,
+      &isosurface_misses_measure,
+      &isosurface_limit_measure,
+      &isosurface_jumps_measure,
       &quadratic_gray_fit_measure,
       &cubic_splitting_measure,
       &orders_measure,
@@ -116,6 +123,7 @@ std::span<const Measure* const> measures() {
       &partial_pre_integration_measure,
       &table_pareto_measure,
       &images_measure,
+      &isosurface_images_measure,
       &costs_measure,
       &printed_figures_measure,
       &paper_identities_measure,

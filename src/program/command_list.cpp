@@ -49,6 +49,7 @@ Json schema_of_names() {
           {"title", "The names that the program knows, as `raytruth list --schema` writes them"},
           {"$defs",
            {{"scheme", words_json(names_of(catalogue::integral_schemes()))},
+            {"surface_scheme", words_json(names_of(catalogue::surface_schemes()))},
             {"signal_scheme", words_json(catalogue::scheme_names())},
             {"shading", words_json(names_of(catalogue::shadings()))},
             {"highlight", words_json(names_of(catalogue::highlights()))},

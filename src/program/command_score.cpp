@@ -1,5 +1,7 @@
 #include "experiments/output.hpp"
 #include "program/command.hpp"
+#include "raytruth/documents/conformance/hit_score.hpp"
+#include "raytruth/documents/conformance/hit_vectors.hpp"
 #include "raytruth/documents/conformance/score_document.hpp"
 #include "raytruth/documents/json/input.hpp"
 #include "raytruth/documents/json/json_reader.hpp"
@@ -75,6 +77,24 @@ constexpr std::array vector_columns{
     Column{"opacity_error", "error", Column::Kind::error},
 };
 
+constexpr std::array hit_level_columns{
+    Column{"level", "level", Column::Kind::word},
+    Column{"cases", "cases", Column::Kind::count},
+    Column{"answered", "answered", Column::Kind::count},
+    Column{"right", "right", Column::Kind::count},
+    Column{"missed", "hits missed", Column::Kind::count},
+    Column{"false_hits", "false", Column::Kind::count},
+    Column{"digits_min", "digits: least", Column::Kind::digits},
+    Column{"digits_median", "median", Column::Kind::digits},
+    Column{"worst", "worst case", Column::Kind::word},
+};
+
+constexpr std::array hit_columns{
+    Column{"id", "id", Column::Kind::word},           Column{"hits", "hits", Column::Kind::count},
+    Column{"missed", "missed", Column::Kind::count},  Column{"false_hits", "false", Column::Kind::count},
+    Column{"digits", "digits", Column::Kind::digits}, Column{"error", "error", Column::Kind::error},
+};
+
 std::string cell_text(const Column& column, const Json& value) {
   if (value.is_null()) return "-";
   switch (column.kind) {
@@ -114,8 +134,29 @@ std::string table_text(std::span<const Column> columns, const Json& lines) {
   return text;
 }
 
+void print_lines(const Json& lines, std::span<const Column> columns, bool as_json) {
+  print(as_json ? lines.dump(2) + "\n" : table_text(columns, lines));
+}
+
+int score_hits(const JsonReader& document, const ScoreOptions& options) {
+  if (options.emission)
+    throw InputError("command line: --emission: found it with vectors of hits, which have none; no such option");
+  std::vector<ScoredHits> vectors = read_scored_hits(document);
+  std::vector<std::string> warnings;
+  auto answers = read_hit_answers(options.answers, warnings);
+  for (const std::string& warning : warnings) say(warning);
+  take_hit_answers(vectors, std::move(answers), input_name(options.answers), input_name(options.vectors));
+  if (options.per_vector)
+    print_lines(scored_hits_json(vectors), hit_columns, options.json);
+  else
+    print_lines(hit_levels_json(vectors), hit_level_columns, options.json);
+  return 0;
+}
+
 int score_answers(const ScoreOptions& options) {
-  std::vector<ScoredVector> vectors = read_scored_vectors(JsonReader::from_file(options.vectors));
+  const JsonReader document = JsonReader::from_file(options.vectors);
+  if (document.at("raytruth").json() == Json(hit_vector_form)) return score_hits(document, options);
+  std::vector<ScoredVector> vectors = read_scored_vectors(document);
   std::vector<std::string> warnings;
   auto answers = read_answers(options.answers, warnings);
   for (const std::string& warning : warnings) say(warning);
@@ -125,14 +166,15 @@ int score_answers(const ScoreOptions& options) {
   const Json lines = options.per_vector ? scored_json(vectors) : levels_json(score(vectors));
   const std::span<const Column> columns =
       options.per_vector ? std::span<const Column>(vector_columns) : std::span<const Column>(level_columns);
-  print(options.json ? lines.dump(2) + "\n" : table_text(columns, lines));
+  print_lines(lines, columns, options.json);
   return 0;
 }
 
 std::function<int()> describe(CommandOptions& add) {
   const auto options = std::make_shared<ScoreOptions>();
   add.operand("vectors", options->vectors, "JSON file, written by `raytruth vectors`");
-  add.operand("answers", options->answers, "CSV file with the header id,r,g,b,opacity; '-' is standard input");
+  add.operand("answers", options->answers,
+              "CSV file with the header id,r,g,b,opacity, or id,hit,t,surface; '-' is standard input");
   add.word("--emission", options->emission, {"associated", "plain"},
            "Score the vectors of this convention only (default: all)");
   add.flag("--per-vector", options->per_vector, "A line for each vector, not for each level");
@@ -158,7 +200,12 @@ const Command score_command{
         "and how many were answered stands beside them. A program that knows one convention of emission\n"
         "says which: --emission associated, or plain. Ids that are not in the vectors are refused.\n"
         "Vectors of the forms vectors/1 and vectors/2 are read; semicolons between fields, and decimal\n"
-        "commas with them, are read as spreadsheets write them.",
+        "commas with them, are read as spreadsheets write them.\n"
+        "\n"
+        "Of `raytruth vectors --hits` an answer is CSV id,hit,t,surface: a line for each hit of a ray, counted\n"
+        "from 0, front to back, or its id alone where there is none. A ray is right where the number of its\n"
+        "hits and the order of their surfaces are; then it has digits, -log10 of the worst error of t over\n"
+        "the ray's length.",
     .describe = describe};
 
 }  // namespace raytruth

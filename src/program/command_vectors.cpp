@@ -1,6 +1,8 @@
 #include "experiments/output.hpp"
 #include "experiments/result.hpp"
 #include "program/command.hpp"
+#include "raytruth/core/error.hpp"
+#include "raytruth/documents/conformance/hit_vectors.hpp"
 #include "raytruth/documents/conformance/vector_volume.hpp"
 #include "raytruth/documents/conformance/vectors.hpp"
 
@@ -22,6 +24,7 @@ struct VectorsOptions {
   std::string form{vector_form_names.back()};
   std::optional<std::string> volumes;  ///< a folder
   std::int64_t intervals = 256;        ///< along a ray, of the volumes
+  bool hits = false;
 };
 
 /// Writes every vector as a volume and a scene, and beside them what their pixels are: vectors again.
@@ -40,11 +43,13 @@ void write_volumes(const std::vector<ConformanceVector>& vectors, VectorForm for
 }
 
 int write_vectors(const VectorsOptions& options) {
+  if (options.hits && options.volumes)
+    throw InputError("command line: --volumes: found it beside --hits; one of them is allowed");
   const auto form = options.form == vector_form_names.front() ? VectorForm::first : VectorForm::second;
   const auto seed = static_cast<std::uint64_t>(options.seed);
   if (options.volumes) write_volumes(conformance_vectors(seed, form), form, options);
   if (options.volumes && !options.file) return 0;
-  const std::string text = result_text(vectors_json(seed, form));
+  const std::string text = result_text(options.hits ? hit_vectors_json(seed) : vectors_json(seed, form));
   if (options.file)
     write_whole(*options.file, text);
   else
@@ -58,6 +63,8 @@ std::function<int()> describe(CommandOptions& add) {
   add.seed(options->seed, "Other vectors of the same levels (default: 1)");
   add.word("--form", options->form, {vector_form_names.begin(), vector_form_names.end()},
            "For readers of the first form, what it has of these (default: vectors/2)");
+  add.flag("--hits", options->hits,
+           "Write 200 rays with their crossings of isosurfaces instead, for `score` of a CSV id,hit,t,surface");
   add.text("--volumes", "DIR", options->volumes,
            "For renderers of voxels: every ray as a thin volume ID.nrrd with its scene ID.json, and in vectors.json\n"
            "what every pixel of its image is, certified: `score DIR/vectors.json answers.csv`");
@@ -79,6 +86,9 @@ const Command vectors_command{
         "means. Levels from linear_rays on are for renderers that sample: their rays are linear between\n"
         "equidistant samples, so that nothing but the integral is asked. The form vectors/1 has the levels\n"
         "before them only, bit for bit.\n"
+        "\n"
+        "With --hits each vector is a ray and the scalars of isosurfaces, with all crossings certified: t and\n"
+        "its radius. Where the scalar touches a surface from one side nothing is crossed, nor at a ray's ends.\n"
         "\n"
         "A volume holds the ray's samples in binary32, as columns along z; its scene ends it at the centres of\n"
         "voxels. The pixels' truth is that of these numbers, linear between them, so sampling is no part of it.",

@@ -3,6 +3,7 @@
 #include "raytruth/schemes/integral_schemes.hpp"
 #include "raytruth/schemes/sampling.hpp"
 #include "raytruth/schemes/scheme_list.hpp"
+#include "raytruth/schemes/surface_method.hpp"
 #include "raytruth/shading/highlight.hpp"
 #include "raytruth/shading/normal_curve.hpp"
 #include "raytruth/shading/slab_shading.hpp"

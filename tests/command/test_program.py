@@ -50,7 +50,7 @@ class Help(ProgramTest):
 
 
 class Lists(ProgramTest):
-    kinds = ["signals", "fields", "transfers", "samplings", "schemes", "measures", "shadings", "tables", "experiments", "volumes"]
+    kinds = ["signals", "fields", "transfers", "samplings", "schemes", "surfaces", "measures", "shadings", "tables", "experiments", "volumes"]
 
     def test_everything(self):
         everything = self.json_of("list", "--json")

@@ -13,8 +13,11 @@
 #include "raytruth/reference/surface_integral.hpp"
 #include "raytruth/reference/surroundings_of.hpp"
 #include "raytruth/schemes/scheme_integral.hpp"
+#include "raytruth/schemes/surface_march.hpp"
 #include "raytruth/signals/marschner_lobb.hpp"
 #include "raytruth/signals/ray_field.hpp"
+#include "raytruth/skipping/clear_scalars.hpp"
+#include "raytruth/tables/isoslab_table.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -34,9 +37,11 @@ constexpr double largest_value = 0x1p900;
 constexpr std::string_view why_no_integral = "the case states no transfer function";
 constexpr std::string_view why_no_deformation = "the case states a deformation, and this scheme follows straight rays";
 constexpr std::string_view why_no_surfaces =
-    "the transfer function has isosurfaces, and this scheme integrates matter alone";
+    "the transfer function has isosurfaces, and this scheme integrates matter alone: `raytruth list surfaces` has "
+    "schemes that find them";
 constexpr std::string_view why_no_gaps =
     "the ray leaves the mesh and enters it again, and this scheme would sample across the gap";
+constexpr std::string_view why_without_surfaces = "the transfer function has no isosurfaces";
 
 std::array<double, 3> read_place(const JsonReader& json) {
   const Vector3<double> vector = read_vector(json);
@@ -314,6 +319,7 @@ class SchemeAnswers {
   }
 
   Json operator()(const std::string& name) {
+    if (find_named(catalogue::surface_schemes(), name) != nullptr) return refused(why_without_surfaces);
     const IntegralScheme& scheme = *find_named(catalogue::integral_schemes(), name);
     Json answer = Json::object();
     if (truth_ != nullptr) answer = integral_json(integrate_->budget(scheme, signal_, samples_, *truth_), *truth_);
@@ -335,17 +341,95 @@ class SchemeAnswers {
   std::optional<SchemeIntegral> integrate_;
 };
 
+/// What a scheme makes of the isosurfaces and of the matter between them, and its error.
+Json surface_json(const Outcome<>& outcome, const Certified& truth) {
+  const Difference error{outcome.color - truth.color, outcome.opacity - truth.opacity};
+  const double radius = outcome.radius + truth.radius;
+  if (!is_finite(error.color, error.opacity) || !std::isfinite(radius)) return refused(why_not_finite);
+  Json answer{
+      {"color", color_json(outcome.color)}, {"opacity", outcome.opacity},      {"color_error", color_json(error.color)},
+      {"opacity_error", error.opacity},     {"error_bound", radius},           {"samples", outcome.fetches},
+      {"lookups", outcome.lookups},         {"composites", outcome.composites}};
+  add_status(answer, outcome.status);
+  return answer;
+}
+
+/// The scheme's surfaces, found between samples.
+template <int Degree>
+Json found_surfaces_json(const Case& ray, const SurfaceScheme& scheme, const Chain<Degree>& signal,
+                         const Samples<double>& samples, const Certified& truth) {
+  SurfaceMarch march(*ray.transfer, ray.emission, ray.isosurfaces);
+  const SurfaceOutcome outcome = march(scheme, signal, samples, ray.surface_numbers.tolerance);
+  Json answer = surface_json(outcome, truth);
+  if (is_refused(answer)) return answer;
+  answer["hits"] = Json::array();
+  for (const SampledHit& hit : outcome.hits) answer["hits"].push_back({{"t", hit.t}, {"surface", hit.surface}});
+  return answer;
+}
+
+/// The scheme's isoslabs, from a table over the signal's range.
+template <int Degree>
+Json isoslab_json(const Case& ray, IsoslabDensity density, const Chain<Degree>& signal, const Samples<double>& samples,
+                  const Certified& truth) {
+  if (signal.pieces.empty()) return surface_json({}, truth);
+  const auto [low, high] = signal.range();
+  const auto& points = ray.transfer->points();
+  const bool is_clear = ClearScalars(*ray.transfer, ray.emission).contain(points.front().s, points.back().s);
+  if (!is_clear) return refused("isoslabs stand alone: the transfer function has points too");
+  if (density == IsoslabDensity::per_length && !samples.step)
+    return refused("isoslabs per length need samples at a constant step, the length of the table's slabs");
+  const Isoslab& isoslab = ray.surface_numbers.isoslab;
+  const TableAxes axes{.size = isoslab.size,
+                       .low = low,
+                       .high = low < high ? high : low + 1,  // a constant signal asks for one entry only
+                       .length = samples.step.value_or(1)};
+  const IsoslabTable table =
+      ray.json.at("transfer_function").blame_for([&] { return IsoslabTable(ray.isosurfaces, density, isoslab, axes); });
+  Json answer = surface_json(isoslab_light(table, samples), truth);
+  if (is_refused(answer)) return answer;
+  answer["isoslab_width"] = isoslab.width * (axes.high - axes.low) / static_cast<double>(axes.size - 1);
+  return answer;
+}
+
+/// What the case's schemes make of a ray that meets isosurfaces.
+template <int Degree>
+Json surface_answers(const Case& ray, const Chain<Degree>& signal, const Certified& truth) {
+  Json answers = Json::object();
+  if (!names_a_scheme(ray)) return answers;
+  Samples<double> samples;
+  ray.json.at("sampling").blame_for([&] { take_samples(signal, *ray.sampling, samples); });
+  for (const std::string& name : ray.schemes) {
+    if (name == "reference") continue;
+    const SurfaceScheme* const scheme = find_named(catalogue::surface_schemes(), name);
+    if (scheme == nullptr)
+      answers[name] = refused(why_no_surfaces);
+    else if (scheme->isoslab)
+      answers[name] = isoslab_json(ray, *scheme->isoslab, signal, samples, truth);
+    else
+      answers[name] = found_surfaces_json(ray, *scheme, signal, samples, truth);
+  }
+  return answers;
+}
+
+/// The names of all schemes that a case may ask for.
+std::vector<std::string_view> scheme_names() {
+  std::vector<std::string_view> names = names_of(catalogue::integral_schemes());
+  for (const SurfaceScheme& scheme : catalogue::surface_schemes()) names.push_back(scheme.name);
+  return names;
+}
+
 }  // namespace
 
 Case CaseReader::read(const JsonReader& json, std::vector<std::string>& warnings) {
-  json.only({"raytruth", "signal", "deformation", "transfer_function", "emission", "sampling", "schemes"});
+  json.only({"raytruth", "signal", "deformation", "transfer_function", "emission", "sampling", "schemes",
+             "surface_tolerance", "isoslab"});
   check_form(json, "case/1");
   const JsonReader signal = json.at("signal");
   const std::string kind = signal.at("kind").word(names_of(catalogue::signals));
   std::vector<OutsideProgram> programs;
-  Case ray{json, std::nullopt, read_schemes(json.at("schemes"), names_of(catalogue::integral_schemes()), &programs),
-           std::nullopt};
+  Case ray{json, std::nullopt, read_schemes(json.at("schemes"), scheme_names(), &programs), std::nullopt};
   ray.programs = std::move(programs);
+  ray.surface_numbers = read_surface_numbers(json, ray.schemes);
   if (json.find("sampling") || names_a_scheme(ray)) ray.sampling = read_sampling(json.at("sampling"));
   const bool has_volume = kind == "trilinear" || kind == "tricubic";
   if (const auto transfer = json.find("transfer_function")) {
@@ -463,10 +547,11 @@ Json evaluate(const Case& ray) {
         if (ray.transfer) truth = truth_of(ray, signal, hits ? &*hits : nullptr);
         Json schemes = Json::object();
         const bool has_gaps = ray.mesh_ray && ray.mesh_ray->parts.size() > 1;
-        if (hits || has_gaps || ray.deformed) {
-          const std::string_view why = hits ? why_no_surfaces : has_gaps ? why_no_gaps : why_no_deformation;
+        if (has_gaps || ray.deformed) {
           for (const std::string& scheme : ray.schemes)
-            if (scheme != "reference") schemes[scheme] = refused(why);
+            if (scheme != "reference") schemes[scheme] = refused(has_gaps ? why_no_gaps : why_no_deformation);
+        } else if (hits) {
+          schemes = surface_answers(ray, signal, *truth);
         } else if (names_a_scheme(ray)) {
           SchemeAnswers answer_of(ray, signal, truth ? &*truth : nullptr);
           for (const std::string& scheme : ray.schemes)

@@ -6,6 +6,7 @@
 #include "raytruth/documents/json/json_reader.hpp"
 #include "raytruth/documents/mesh_source.hpp"
 #include "raytruth/documents/outside_program.hpp"
+#include "raytruth/documents/surface_numbers.hpp"
 #include "raytruth/documents/volume_source.hpp"
 #include "raytruth/reference/arb_integral.hpp"
 #include "raytruth/reference/surface_hits.hpp"
@@ -32,7 +33,7 @@ namespace raytruth {
 struct Case {
   JsonReader json;
   std::optional<Sampling> sampling;  ///< none: the reference alone is asked for
-  std::vector<std::string> schemes;  ///< of the catalogue, or "reference"
+  std::vector<std::string> schemes;  ///< of the catalogue, of surfaces too, or "reference"
   std::optional<PiecewiseLinear> transfer;
   nlohmann::ordered_json transfer_description =
       {};  ///< of another program's file; null: the points are of this program
@@ -42,6 +43,7 @@ struct Case {
   std::variant<PreciseChain<3>, PreciseChain<largest_degree>> precise_signal = {};  ///< where there is no formula
   std::variant<std::monostate, MarschnerLobbRay, AnalyticSignal> formula = {};  ///< that the chain only approximates
   std::vector<Isosurface> isosurfaces = {};
+  SurfaceNumbers surface_numbers = {};
   Surroundings surroundings = {};               ///< of a ray through a volume
   std::optional<Border> border = {};            ///< of the volume, if there is one
   std::optional<MeshRay> mesh_ray = {};         ///< of a ray through tetrahedra

@@ -21,9 +21,13 @@ nlohmann::ordered_json radius_json(const Rendering& rendering) {
                              : "the camera's rays as rounded to binary64";
   } else {
     result["measured_radius"] = *largest;
+    // Lit surfaces are added up, not integrated.
     result["radius"] =
-        "sum of the differences of two quadratures (7 and 15 nodes) over all panels of a ray: an "
-        "estimate, not a bound; rounding is left out";
+        rendering.unresolved
+            ? "by how much the light of isosurfaces differs where their crossings may lie, and all light "
+              "behind an unresolved contact: measured, not a bound"
+            : "sum of the differences of two quadratures (7 and 15 nodes) over all panels of a ray: an "
+              "estimate, not a bound; rounding is left out";
   }
   if (rendering.unresolved) result["unresolved_contacts"] = *rendering.unresolved;
   result["not_converged"] = rendering.not_converged;
@@ -36,6 +40,11 @@ nlohmann::ordered_json radius_json(const Rendering& rendering) {
         "{} have a bound above {} times the brightest light that a ray can have (at least 1); the largest is {}. All "
         "bounds hold: they are wide where a ray grazes a jump of the transfer function or the border of the volume, so "
         "that rounding decides what it meets",
+        of_pixels, rendering.tolerance, the_largest);
+  else if (rendering.unresolved)
+    result["why_not_converged"] = fmt::format(
+        "in {} the light of isosurfaces differs by more than {} times the brightest (at least 1) within what their "
+        "crossings may be off by, or a contact is not resolved; the largest measured radius is {}",
         of_pixels, rendering.tolerance, the_largest);
   else
     result["why_not_converged"] = fmt::format(

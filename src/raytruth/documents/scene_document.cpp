@@ -11,7 +11,9 @@
 #include "raytruth/documents/radius_axis_json.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
 #include "raytruth/documents/scene_warnings.hpp"
+#include "raytruth/documents/surface_numbers.hpp"
 #include "raytruth/reference/ray_integral.hpp"
+#include "raytruth/render/suitable_surfaces.hpp"
 #include "raytruth/tables/table3.hpp"
 
 #include <fmt/format.h>
@@ -274,14 +276,32 @@ SceneShading read_shading(const JsonReader& json) {
 std::string read_scheme(const JsonReader& json) {
   std::vector<std::string_view> names{"reference"};
   for (const IntegralScheme& scheme : catalogue::integral_schemes()) names.push_back(scheme.name);
+  for (const SurfaceScheme& scheme : catalogue::surface_schemes()) names.push_back(scheme.name);
   return json.word(names);
 }
 
-/// Refuses what renders no isosurfaces.
-void refuse_without_surfaces(const JsonReader& json, const Scene& scene) {
-  if (scene.scheme != "reference")
-    json.at("scheme").refuse(fmt::format("{} with isosurfaces", scene.scheme), "the scheme reference");
-  if (scene.shading) json.at("shading").refuse("light on isosurfaces", "isosurfaces without shading");
+/// What a scene with or without isosurfaces asks of its scheme.
+void read_surfaces(const JsonReader& json, Scene& scene) {
+  const bool has_surfaces = !scene.isosurfaces.empty();
+  const bool is_surface_scheme = find_named(catalogue::surface_schemes(), scene.scheme) != nullptr;
+  if (has_surfaces && !is_surface_scheme && scene.scheme != "reference")
+    json.at("scheme").refuse(fmt::format("{} with isosurfaces", scene.scheme),
+                             "reference, or a scheme that finds them, as every_crossing (`raytruth list surfaces`),");
+  if (!has_surfaces && is_surface_scheme)
+    json.at("scheme").refuse(fmt::format("{} without isosurfaces", scene.scheme),
+                             "a transfer function with isosurfaces, or another scheme,");
+  const SurfaceNumbers numbers = read_surface_numbers(json, {scene.scheme});
+  scene.surface_tolerance = numbers.tolerance;
+  scene.isoslab = numbers.isoslab;
+  if (has_surfaces)
+    json.at(scene.shading ? "shading" : "scheme").blame_for([&scene] {
+      refuse_unsuitable_surfaces(scene);
+      return 0;
+    });
+  if (!is_surface_scheme) return;
+  for (const std::string_view key : {"early_termination", "empty_space"})
+    if (const auto place = json.find(key))
+      place->refuse(fmt::format("it with the scheme {}", scene.scheme), "a scheme without isosurfaces");
 }
 
 /// Refuses what does not follow the rays of a deformed volume.
@@ -316,7 +336,9 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
              "table",
              "early_termination",
              "empty_space",
-             "deformation"});
+             "deformation",
+             "surface_tolerance",
+             "isoslab"});
   if (json.find("mesh")) refuse_volumes_members(json);
   std::optional<OutsideProgram> program;
   if (is_outside_program(json.at("scheme"))) program = read_outside_program(json.at("scheme"));
@@ -363,11 +385,11 @@ SceneFile read_scene(const JsonReader& json, const SceneOptions& options) {
                                                  result.warnings);
   scene.transfer = std::move(read.transfer);
   scene.isosurfaces = std::move(read.isosurfaces);
-  if (!scene.isosurfaces.empty()) refuse_without_surfaces(json, scene);
   if (!scene.isosurfaces.empty() && scene.mesh)
     transfer.refuse("isosurfaces with a mesh", "matter alone, or rays of cases,");
   if (!scene.isosurfaces.empty() && scene.deformation)
     json.at("deformation").refuse("a deformation of isosurfaces", "one of what a transfer function without them shows");
+  read_surfaces(json, scene);
   result.transfer_function = std::move(read.description);
   if (scene.shading && scene.transfer.is_linear_in_opacity()) result.transfer_function["lit"] = sampled_opacity;
   // RayIntegral refuses numbers that it cannot calculate with.

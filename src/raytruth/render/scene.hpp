@@ -12,6 +12,7 @@
 #include "raytruth/skipping/occupied_blocks.hpp"
 #include "raytruth/tables/look_up.hpp"
 #include "raytruth/transfer/emission.hpp"
+#include "raytruth/transfer/isoslab.hpp"
 #include "raytruth/transfer/isosurface.hpp"
 #include "raytruth/transfer/piecewise_linear.hpp"
 #include "raytruth/volume/grid.hpp"
@@ -82,8 +83,9 @@ struct Scene {
   PiecewiseLinear transfer;
   Emission emission = Emission::associated;
   Camera camera = {};
-  std::string scheme = "reference";  ///< this, or one of catalogue::integral_schemes
-  std::optional<double> step = {};   ///< of samples; none: at cells' borders and midpoints
+  /// This, or one of catalogue::integral_schemes, or, with isosurfaces, of catalogue::surface_schemes.
+  std::string scheme = "reference";
+  std::optional<double> step = {};  ///< of samples; none: at cells' borders and midpoints
   std::optional<SceneTable> table = {};
   std::optional<SceneShading> shading = {};
   double opaque = std::numeric_limits<double>::infinity();  ///< rays end where their opacity reaches this
@@ -94,6 +96,8 @@ struct Scene {
   std::vector<Isosurface> isosurfaces = {};  ///< beside the transfer function's matter
   /// What the volume is seen through; null: nothing. Object coordinates are voxels times the spacing.
   std::shared_ptr<const Deformation> deformation = {};
+  double surface_tolerance = 0;  ///< of the scheme `threshold`, in scalars
+  Isoslab isoslab = {};          ///< of the schemes of isoslabs
 };
 
 }  // namespace raytruth

@@ -19,17 +19,16 @@ double place_on_line(const Samples<double>& samples, std::size_t interval, doubl
   return static_cast<double>(samples.positions[interval]) + share * samples.length_of(interval);
 }
 
-/// Where the signal passes it, by three steps of regula falsi.
+/// Where the signal passes it, by regula falsi.
 template <int Degree>
 double place_on_signal(const Chain<Degree>& signal, const Samples<double>& samples, std::size_t interval,
                        double scalar) {
-  constexpr int steps = 3;
   auto low = static_cast<double>(samples.positions[interval]);
   auto high = static_cast<double>(samples.positions[interval + 1]);
   double at_low = samples.values[interval] - scalar;
   double at_high = samples.values[interval + 1] - scalar;
   double place = low;
-  for (int step = 0; step < steps && at_low != at_high; ++step) {
+  for (int step = 0; step < regula_falsi_steps && at_low != at_high; ++step) {
     place = low - at_low * (high - low) / (at_high - at_low);
     const double here = signal.value(DoubleDouble(place)) - scalar;
     if ((here < 0) == (at_low < 0)) {
@@ -72,6 +71,70 @@ std::vector<SampledHit> near_samples(const Samples<double>& samples, const std::
 }
 
 }  // namespace
+
+namespace catalogue {
+
+const std::vector<SurfaceScheme>& surface_schemes() {
+  static const std::vector<SurfaceScheme> list{
+      {.name = "every_crossing",
+       .summary = "all isosurfaces passed between two samples, each where the line between them has its value",
+       .source = "Engel, Kraus and Ertl 2001, for any number of them",
+       .method = SurfaceMethod::every_crossing,
+       .interpolates_normals = true,
+       .color = "#0072B2",
+       .marker = "o"},
+      {.name = "nearest_normal",
+       .summary = "the same, all of them lit by the first one's normal",
+       .source = "Meissner et al. 2002, as Lum 2004, section 2.1, tells it",
+       .method = SurfaceMethod::nearest_normal,
+       .interpolates_normals = true,
+       .color = "#56B4E9",
+       .marker = "s"},
+      {.name = "nearest_only",
+       .summary = "the first isosurface passed between two samples, and no other",
+       .source = "Lum 2004, section 2.1",
+       .method = SurfaceMethod::nearest_only,
+       .interpolates_normals = true,
+       .color = "#009E73",
+       .marker = "^"},
+      {.name = "one_per_step",
+       .summary = "the state moves by one isosurface at each sample, where the surface is drawn",
+       .source = "VTK's isosurface blending",
+       .method = SurfaceMethod::one_per_step,
+       .samples_matter = true,
+       .color = "#D55E00",
+       .marker = "v"},
+      {.name = "peak_finding",
+       .summary = "the first isosurface passed, its place by three steps of regula falsi on the signal",
+       .source = "Knoll et al. 2009, as we read it",
+       .method = SurfaceMethod::peak_finding,
+       .samples_matter = true,
+       .color = "#CC79A7",
+       .marker = "D"},
+      {.name = "threshold",
+       .summary = "an isosurface at every sample that is nearer to its value than a tolerance",
+       .source = "",
+       .method = SurfaceMethod::threshold,
+       .samples_matter = true,
+       .color = "#999999",
+       .marker = "x"},
+      {.name = "isoslab_per_crossing",
+       .summary = "slabs around isosurfaces from a table, as deep as a crossing at every angle",
+       .source = "Kraus 2005",
+       .isoslab = IsoslabDensity::per_crossing,
+       .color = "#882255",
+       .marker = "d"},
+      {.name = "isoslab_per_length",
+       .summary = "slabs around isosurfaces from a table, as deep as a crossing at one slope of the scalar",
+       .source = "Lum 2004, sections 2 and 5.2",
+       .isoslab = IsoslabDensity::per_length,
+       .color = "#AA4499",
+       .marker = "P"},
+  };
+  return list;
+}
+
+}  // namespace catalogue
 
 template <int Degree>
 std::vector<SampledHit> sampled_hits(SurfaceMethod method, const Chain<Degree>& signal, const Samples<double>& samples,

@@ -2,9 +2,10 @@
 
 #include "raytruth/core/chain.hpp"
 #include "raytruth/schemes/samples.hpp"
+#include "raytruth/transfer/isoslab.hpp"
 
-#include <array>
 #include <cstddef>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -20,8 +21,33 @@ enum class SurfaceMethod {
   threshold,       ///< every sample nearer to a value than a tolerance
 };
 
-inline constexpr std::array<std::string_view, 6> surface_method_names{
-    "every_crossing", "nearest_normal", "nearest_only", "one_per_step", "peak_finding", "threshold"};
+/// A way from samples to the light of isosurfaces and of the matter between them: a row of the catalogue.
+struct SurfaceScheme {
+  std::string_view name;
+  std::string_view summary;
+  std::string_view source;
+  SurfaceMethod method{};  ///< says nothing of isoslabs
+  /// Whether surfaces are no surfaces but slabs of matter from a table (IsoslabTable), and which; else `SurfaceMarch`
+  /// does what the row says.
+  std::optional<IsoslabDensity> isoslab = {};
+  /// Whether a slab's matter has the optics of its front sample, as `riemann_left`; else the scalar is linear in the
+  /// slab, and matter is integrated exactly on both sides of a surface.
+  bool samples_matter = false;
+  /// Whether a surface's normal is interpolated between those of the samples around it, and normalised; else it is the
+  /// gradient's where the surface is met.
+  bool interpolates_normals = false;
+  std::string_view color = {};   ///< of its line in plots
+  std::string_view marker = {};  ///< of its points, as matplotlib names it
+};
+
+namespace catalogue {
+
+const std::vector<SurfaceScheme>& surface_schemes();
+
+}  // namespace catalogue
+
+/// How often `peak_finding` reads the signal between two samples.
+inline constexpr int regula_falsi_steps = 3;
 
 /// A surface as a method meets it.
 struct SampledHit {

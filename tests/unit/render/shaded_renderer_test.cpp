@@ -297,7 +297,7 @@ TEST(ShadedRenderer, WhatItRefuses) {
   EXPECT_NO_THROW(Renderer{scene});
   scene.table->builder = "brute_force";
   EXPECT_THROW(Renderer{scene}, InputError);
-  scene.table = SceneTable{.size = ShadedTable::largest_size + 1};
+  scene.table = SceneTable{.size = MomentTable::largest_size + 1};
   EXPECT_THROW(Renderer{scene}, InputError);
   EXPECT_THROW(Renderer{scene_of("order1", lit_by("quadratic_arc_fades"))}, InputError);  // made for cones
 }

@@ -1,6 +1,6 @@
 #include "raytruth/documents/conformance/vectors.hpp"
 
-#include "raytruth/core/random.hpp"
+#include "raytruth/documents/conformance/draws.hpp"
 #include "raytruth/documents/read_transfer_function.hpp"
 #include "raytruth/reference/arb_integral.hpp"
 #include "raytruth/signals/piecewise_polynomial.hpp"
@@ -19,25 +19,6 @@ namespace raytruth {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// The random numbers of one vector, one after the other.
-class Draws {
- public:
-  Draws(std::uint64_t seed, std::uint64_t vector) : seed_(seed), vector_(vector) {}
-
-  /// One of low, low + 1, ..., high.
-  int whole(int low, int high) { return low + static_cast<int>(next() * (high - low + 1)); }
-
- private:
-  double next() {
-    const std::uint32_t number = drawn_++;
-    return random_numbers(seed_, RandomStream::vectors, vector_, number / 4)[number % 4];
-  }
-
-  std::uint64_t seed_;
-  std::uint64_t vector_;
-  std::uint32_t drawn_ = 0;
-};
 
 /// Whole numbers, both ends included.
 struct Range {

@@ -2,25 +2,19 @@
 
 #include "raytruth/core/error.hpp"
 #include "raytruth/core/one_line.hpp"
+#include "raytruth/documents/conformance/answer_lines.hpp"
 #include "raytruth/documents/json/input.hpp"
 #include "raytruth/statistics/statistics.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <boost/algorithm/string/trim.hpp>
-#include <boost/tokenizer.hpp>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <numeric>
-#include <sstream>
 #include <string_view>
-#include <system_error>
 
 namespace raytruth {
 
@@ -82,83 +76,6 @@ LevelScore score_level(std::string level, const std::vector<const ScoredVector*>
   return result;
 }
 
-/// What spreadsheets put between fields, and in numbers.
-struct Dialect {
-  char separator = ',';
-  bool has_decimal_commas = false;  ///< seen so far
-};
-
-/// By the header: a semicolon or a tabulator stands there only where it separates.
-Dialect dialect_of(const std::string& text_of_header) {
-  for (const char separator : {';', '\t'})
-    if (text_of_header.find(separator) != std::string::npos) return {separator};
-  return {};
-}
-
-/// A line of the answers, and where it stands.
-struct Line {
-  std::string place;
-  std::string text;
-
-  [[noreturn]] void refuse(std::string_view found, std::string_view allowed) const {
-    throw InputError(one_line(fmt::format("{}: found {}; {} is allowed", place, found, allowed)));
-  }
-
-  [[nodiscard]] std::vector<std::string> fields(const Dialect& dialect) const {
-    std::vector<std::string> fields;
-    try {
-      // A backslash means nothing in RFC 4180; the escape character is one that no id and no number has.
-      const boost::tokenizer tokens(text, boost::escaped_list_separator<char>('\x1b', dialect.separator, '"'));
-      for (const std::string& token : tokens) fields.push_back(boost::trim_copy(token));
-    } catch (const boost::escaped_list_error&) {
-      refuse("an escape character", "text");
-    }
-    if (fields.size() == header.size()) return fields;
-    constexpr std::size_t with_decimal_commas = 1 + 2 * (header.size() - 1);
-    const bool has_decimal_commas =
-        dialect.separator == ',' && fields.size() > header.size() && fields.size() <= with_decimal_commas;
-    refuse(fmt::format("{} fields", fields.size()),
-           fmt::format("{}{}", fmt::join(header, ","),
-                       has_decimal_commas ? " (with decimal commas, semicolons between fields)" : ""));
-  }
-
-  /// A number; NaN where the field is empty, and an infinity beyond binary64: neither has digits.
-  [[nodiscard]] double number(std::string_view name, const std::string& field, Dialect& dialect) const {
-    if (field.empty()) return std::numeric_limits<double>::quiet_NaN();
-    std::string digits = field.front() == '+' ? field.substr(1) : field;
-    if (dialect.separator != ',' && digits.find('.') == std::string::npos &&
-        std::count(digits.begin(), digits.end(), ',') == 1) {
-      digits[digits.find(',')] = '.';
-      dialect.has_decimal_commas = true;
-    }
-    double value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (end != digits.data() + digits.size() || error == std::errc::invalid_argument) {
-      const bool has_comma = dialect.separator == ',' && field.find(',') != std::string::npos;
-      refuse(fmt::format("{} '{}'", name, shortened(field)),
-             has_comma ? "a number (with decimal commas, semicolons between fields)" : "a number");
-    }
-    // What is too small for binary64 is 0, and what is too large an infinity, as strtod has it.
-    return error == std::errc::result_out_of_range ? std::strtod(digits.c_str(), nullptr) : value;
-  }
-};
-
-/// The lines of a file's text that are not blank.
-std::vector<Line> lines_of(std::string_view bytes, const std::string& name) {
-  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
-  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
-    throw InputError(fmt::format("{}: found text in UTF-16, by its byte order mark; UTF-8 is allowed", name));
-  std::istringstream text{std::string(bytes)};
-  std::vector<Line> lines;
-  std::string line;
-  for (int number = 1; std::getline(text, line); ++number)
-    if (!boost::trim_copy(line).empty()) lines.push_back({fmt::format("{}: line {}", name, number), line});
-  if (lines.empty())
-    throw InputError(fmt::format("{}: found no lines; a header {} is allowed", name, fmt::join(header, ",")));
-  return lines;
-}
-
 }  // namespace
 
 AnswerScore score_of(const Answer& answer, const Certified& truth) {
@@ -193,27 +110,19 @@ std::map<std::string, Answer> read_answers(const std::string& path, std::vector<
 
 std::map<std::string, Answer> answers_in(std::string_view text, const std::string& name,
                                          std::vector<std::string>& warnings) {
-  const std::vector<Line> lines = lines_of(text, name);
-  Dialect dialect = dialect_of(lines.front().text);
-  if (!std::equal(header.begin(), header.end(), lines.front().fields(dialect).begin()))
-    lines.front().refuse(fmt::format("'{}'", shortened(boost::trim_copy(lines.front().text))),
-                         fmt::format("the header {}", fmt::join(header, ",")));
+  AnswerLines read(text, name, {header.begin(), header.end()});
   std::map<std::string, Answer> answers;
   std::vector<std::string> without_numbers;
-  std::for_each(lines.begin() + 1, lines.end(), [&](const Line& line) {
-    const auto fields = line.fields(dialect);
-    if (fields[0].empty()) line.refuse("no id", "the id of a vector");
+  for (const AnswerLines::Line& line : read.lines()) {
+    const auto fields = read.fields(line);
     std::array<double, 4> numbers{};
-    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = line.number(header[i + 1], fields[i + 1], dialect);
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = read.number(line, header[i + 1], fields[i + 1]);
     const Answer answer{{numbers[0], numbers[1], numbers[2]}, numbers[3]};
     if (!answers.emplace(fields[0], answer).second)
       line.refuse(fmt::format("a second answer for '{}'", shortened(fields[0])), "one answer for each id");
     if (!is_finite(answer)) without_numbers.push_back(fields[0]);
-  });
-  if (dialect.separator != ',')
-    warnings.push_back(fmt::format("{}: read with {} between fields{}", name,
-                                   dialect.separator == ';' ? "semicolons" : "tabulators",
-                                   dialect.has_decimal_commas ? " and decimal commas" : ""));
+  }
+  read.warn_of_dialect(warnings);
   if (!without_numbers.empty())
     warnings.push_back(fmt::format("{}: {} of {} answers are not finite, and count as no digits; the first is {}", name,
                                    without_numbers.size(), answers.size(), shortened(without_numbers.front())));

@@ -11,18 +11,13 @@
 #include "raytruth/shading/lit_integral.hpp"
 #include "raytruth/signals/point_gradient.hpp"
 #include "raytruth/skipping/clear_scalars.hpp"
+#include "raytruth/tables/moment_table.hpp"
 
 #include <array>
 #include <cstddef>
 #include <vector>
 
 namespace raytruth {
-
-/// A method's light on one slab.
-struct SlabLight {
-  SlabShader shader;
-  LightModel model;
-};
 
 /// A pixel's ray as its lighting sees it: where its points lie, their normals, and light and viewer.
 class LitView {

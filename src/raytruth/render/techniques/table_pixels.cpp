@@ -145,9 +145,9 @@ PixelRenderer shaded_table_renderer(const Field& field, const Scene& scene,
     const double front = samples.values[first];
     const double back = samples.values[last];
     if (clear.contain(std::min(front, back), std::max(front, back))) return Eigen::Array4d(Eigen::Array4d::Zero());
-    const auto [shader, model] = view.slab_light(*scene.shading, static_cast<double>(samples.positions[first]),
-                                                 static_cast<double>(samples.positions[last]));
-    return (*table)(front, back, share, shader, model);
+    return (*table)(front, back, share,
+                    view.slab_light(*scene.shading, static_cast<double>(samples.positions[first]),
+                                    static_cast<double>(samples.positions[last])));
   };
   return slab_renderer(field, scene, blocks, view_of, slab_of);
 }

@@ -22,6 +22,7 @@ extern const Technique shaded_pixels;
 extern const Technique shaded_reference_pixels;
 extern const Technique shaded_table_pixels;
 extern const Technique surface_pixels;
+extern const Technique surface_scheme_pixels;
 extern const Technique table_march_pixels;
 extern const Technique table_pixels;
 
@@ -30,6 +31,7 @@ std::span<const Technique* const> techniques() {
       &mesh_pixels,
       &deformed_pixels,
       &surface_pixels,
+      &surface_scheme_pixels,
       &shaded_reference_pixels,
       &reference_pixels,
       &quadratic_gray_table_pixels,
