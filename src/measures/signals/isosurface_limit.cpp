@@ -266,6 +266,8 @@ Errors errors_of(const std::vector<double>& differences) {
 
 std::vector<Record> records_of_field(const Experiment& experiment, const Options& options, const Field& field) {
   const TrilinearField traced(field.grid);
+  // Random rays are along no axis.
+  const Surroundings surroundings{.steepest = steepest_slope(traced)};
   const PointGradient gradient(field.grid);
   const auto count = static_cast<std::size_t>(experiment.rays.count);
   const std::vector<double> scalars{options.share};
@@ -277,8 +279,7 @@ std::vector<Record> records_of_field(const Experiment& experiment, const Options
                .signal = {},
                .hits = {}};
     ray.direction = unit_direction(ray.ray.direction);
-    SurfaceHits truth =
-        surface_hits(traced.trace_precisely(ray.ray), scalars, surroundings_of(traced, ray.ray.direction));
+    SurfaceHits truth = surface_hits(traced.trace_precisely(ray.ray), scalars, surroundings);
     if (!truth.unresolved.empty()) return;
     ray.hits = std::move(truth.hits);
     traced.trace(ray.ray, ray.signal);

@@ -190,6 +190,8 @@ std::optional<double> order_between(const Record& before, const Record& here) {
 std::vector<Record> records_of_set(const Experiment& experiment, const Options& options, const Field& field,
                                    const std::vector<double>& scalars) {
   const TrilinearField traced(field.grid);
+  // Random rays are along no axis.
+  const Surroundings surroundings{.steepest = steepest_slope(traced)};
   std::vector<SurfaceScheme> methods = catalogue::surface_schemes();
   std::erase_if(methods, [](const SurfaceScheme& scheme) { return scheme.isoslab.has_value(); });
   const std::size_t kinds = methods.size() * options.steps.size();
@@ -205,8 +207,7 @@ std::vector<Record> records_of_set(const Experiment& experiment, const Options& 
     auto& [signal, samples] = buffers.local();
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const Ray ray = random_ray(field.grid, experiment.rays.length, experiment.seed, i);
-      const SurfaceHits truth =
-          surface_hits(traced.trace_precisely(ray), scalars, surroundings_of(traced, ray.direction));
+      const SurfaceHits truth = surface_hits(traced.trace_precisely(ray), scalars, surroundings);
       if (!truth.unresolved.empty()) continue;
       traced.trace(ray, signal);
       for (std::size_t step = 0; step < options.steps.size(); ++step) {
