@@ -9,6 +9,7 @@ import jsonschema
 import test_eval
 import test_render
 import test_run
+import test_tetrahedra
 from support import EXPERIMENT, RAY, SLAB, SOURCE, STUDY, VOLUME_RAY, ProgramTest, changed
 
 SCHEMAS = {name: json.loads((SOURCE / f"experiments/schemas/{name}.json").read_text()) for name in ("experiment", "case", "result", "scene", "table", "vectors")}
@@ -56,6 +57,16 @@ BEYOND_CASE_SCHEMA = re.compile(
     | /transfer_function/points/1/s\ =\ -1
     | /transfer_function/isosurfaces/(0/s\ =\ 1e\+300|1/s\ =\ -1)  # not ascending
     | /(slab/(front|back)_normal|lighting/(light|half))/\d\ =\ (-1|1e\+300)  # no unit vector
+    """,
+    re.VERBOSE,
+)
+BEYOND_MESH_SCHEMA = re.compile(
+    r"""
+      (/signal)?/mesh/points/0/\d\ =\ 1e\+300  # too far
+    | (/signal)?/mesh/tetrahedra/0/\d\ =\ 1e\+300  # no such point
+    | (/signal)?/mesh\ =\ "word"  # no such file
+    | /signal/volume\ =\ "word"
+    | /signal/(mesh/scalars|origin|volume/values)/0\ =\ 1e\+300
     """,
     re.VERBOSE,
 )
@@ -135,6 +146,25 @@ class Agreement(ProgramTest):
             said = [(what, mutation) for what, mutation in mutations(document) if what.startswith(tuple(f"{prefix}/{member}" for member in members))]
             self.assertGreater(len(said), 40)
             self.assert_agreement(command, validator(name), said, re.compile("none"))
+
+    def test_meshes(self):
+        """Tetrahedra on a ray and in a scene: with scalars of points or of cells, and a grid that is split."""
+        mesh = {"points": test_tetrahedra.POINTS[:4], "tetrahedra": [[0, 1, 2, 3]]}
+        ray = test_tetrahedra.RAY
+        grid = {"size": [2, 2, 2], "values": [0, 1, 0, 1, 0, 1, 0, 1]}
+        split = {key: value for key, value in ray["signal"].items() if key != "mesh"} | {"volume": grid, "split": 5, "parity": "odd"}
+        scene = {"mesh": {**mesh, "cell_scalars": [0.5]}, "transfer_function": test_tetrahedra.LINEAR, "scheme": "reference", "camera": {"size": [2, 2]}}
+        for name, command, document, prefix in (
+            ("case", "eval", changed(ray, "/signal/mesh", {**mesh, "scalars": [0, 1, 0.25, 0.5]}), "/signal"),
+            ("case", "eval", {**ray, "signal": split}, "/signal"),
+            ("scene", "render", scene, "/mesh"),
+        ):
+            self.assertTrue(validator(name).is_valid(document))
+            self.assertTrue(self.program_accepts(command, document))
+            # Of each list the first element: the others are alike.
+            said = [(what, mutation) for what, mutation in mutations(document) if what.startswith(prefix) and not re.search("/[1-9]", what)]
+            self.assertGreater(len(said), 40)
+            self.assert_agreement(command, validator(name), said, BEYOND_MESH_SCHEMA)
 
     def test_experiments(self):
         schema = validator("experiment")
