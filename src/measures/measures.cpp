@@ -25,6 +25,7 @@ extern const Measure gooch_tones_measure;
 extern const Measure gradient_angles_measure;
 extern const Measure images_measure;
 extern const Measure integral_orders_measure;
+extern const Measure inverse_deformation_measure;
 extern const Measure isosurface_images_measure;
 extern const Measure isosurface_jumps_measure;
 extern const Measure isosurface_limit_measure;
@@ -105,6 +106,7 @@ std::span<const Measure* const> measures() {
       &slab_shading_measure,
       &clamps_measure,
       &mirrored_gradient_measure,
+      &inverse_deformation_measure,
       &gooch_tones_measure,
       &shading_integrals_measure,
       &gl_functions_measure,
