@@ -203,7 +203,10 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
        .is_key = true,
        .cell = &Record::variant},
       {.name = "scheme", .description = "of `raytruth list surfaces`", .cell = &Record::scheme},
-      {.name = "shading", .description = "of isoslabs, of `raytruth list shadings`", .cell = &Record::shading},
+      {.name = "shading",
+       .description = "of isoslabs, of `raytruth list shadings`",
+       .is_key = true,
+       .cell = &Record::shading},
       {.name = "table_size", .description = "entries of their table on each axis", .cell = &Record::table_size}};
   append_part(list, &Record::comparison, comparison_columns());
   append_part(list, &Record::picture, picture_columns());
