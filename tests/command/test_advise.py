@@ -14,7 +14,7 @@ POINTS = [
 SCENE = {
     "volume": {"kind": "marschner_lobb", "samples": 24},
     "transfer_function": {"points": POINTS},
-    "camera": {"eye": [40, -60, 30], "target": [11.5, 11.5, 11.5], "up": [0, 0, 1], "height": 36, "size": [48, 40]},
+    "camera": {"eye": [40, -60, 30], "target": [11.5, 11.5, 11.5], "up": [0, 0, 1], "height": 36, "size": [28, 24]},
 }
 
 
