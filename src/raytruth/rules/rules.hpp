@@ -73,6 +73,7 @@ struct Rules {
 #include "raytruth/rules/lighting.glsl"
 #include "raytruth/rules/fades.glsl"
 #include "raytruth/rules/gooch.glsl"
+#include "raytruth/rules/isosurface.glsl"
   // clang-format on
 
   static Bernstein<3, Real> cubic(const vec4& b) { return {{b[0], b[1], b[2], b[3]}}; }

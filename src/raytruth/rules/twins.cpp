@@ -202,6 +202,34 @@ std::array<double, 3> slopes_of(std::span<const float> cubic) {
   return {difference(0), difference(1), difference(2)};
 }
 
+/// Denormal numbers, which shaders may take for 0, have another class than it has.
+void drop_denormals(std::span<float> numbers) {
+  for (float& number : numbers)
+    if (std::abs(number) < smallest_normal) number = 0;
+}
+
+/// Two places between the samples, and scalars on either side of 0.
+void make_bracket(std::span<float> numbers) {
+  constexpr float least = 0x1p-100F;  // times a last place of 1 still a normal number
+  for (float& place : numbers.first(2)) place = std::min(std::abs(place), 1.0F);
+  std::sort(numbers.begin(), numbers.begin() + 2);
+  const bool is_rising = numbers[2] < numbers[3];
+  for (float& scalar : numbers.subspan(2)) scalar = std::max(std::abs(scalar), least);
+  numbers[is_rising ? 2 : 3] *= -1;
+}
+
+/// Unit vectors in all directions, or 0, as three numbers and a 0.
+void make_normal(std::span<float> numbers) {
+  double square = 0;
+  for (float& number : numbers.first(3)) {
+    number = std::clamp(2 * number - 1, -1.0F, 1.0F);
+    square += static_cast<double>(number) * static_cast<double>(number);
+  }
+  numbers[3] = 0;
+  if (square == 0) return;
+  for (float& number : numbers.first(3)) number = static_cast<float>(number / std::sqrt(square));
+}
+
 std::vector<Twin> make_twins() {
   using enum Domain;
   constexpr Twin::Bounds exact{.gl = 0, .rounding = 0};
@@ -291,6 +319,40 @@ std::vector<Twin> make_twins() {
     numbers[2] = numbers[1] * (2 + 62 * std::abs(numbers[2]));
     numbers[0] *= 2 * numbers[2];
     numbers[3] = std::clamp(numbers[3], 1.0F, 16.0F);
+  };
+  Twin isosurface_class_twin = twin(
+      "isosurface_class", [](auto r) { return &decltype(r)::isosurface_class; }, {signal, signal}, exact);
+  isosurface_class_twin.reconcile = drop_denormals;
+  Twin isosurface_crossing_twin = twin(
+      "isosurface_crossing", [](auto r) { return &decltype(r)::isosurface_crossing; }, three, sum);
+  isosurface_crossing_twin.reconcile = drop_denormals;
+  Twin isosurface_regula_falsi_twin = difference_twin(
+      twin(
+          "isosurface_regula_falsi", [](auto r) { return &decltype(r)::isosurface_regula_falsi; }, {signals}, sum),
+      1);
+  isosurface_regula_falsi_twin.reconcile = make_bracket;
+  Twin isosurface_bracket_twin = twin(
+      "isosurface_bracket", [](auto r) { return &decltype(r)::isosurface_bracket; }, {signals, unit, projection},
+      exact);
+  isosurface_bracket_twin.reconcile = [](std::span<float> numbers) {
+    make_bracket(numbers.first(4));
+    drop_denormals(numbers);
+  };
+  // Normals that cancel each other leave a direction that rounding made.
+  Twin isosurface_normal_twin = twin(
+      "isosurface_normal", [](auto r) { return &decltype(r)::isosurface_normal; }, {signals, signals, unit}, sum);
+  isosurface_normal_twin.summand = [](std::span<const float> numbers, std::size_t) {
+    double square = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto front = static_cast<double>(numbers[i]);
+      const double between = front + static_cast<double>(numbers[8]) * (static_cast<double>(numbers[4 + i]) - front);
+      square += between * between;
+    }
+    return 1 / std::max(std::sqrt(square), 1e-30);
+  };
+  isosurface_normal_twin.reconcile = [](std::span<float> numbers) {
+    make_normal(numbers.first(4));
+    make_normal(numbers.subspan(4, 4));
   };
   return {
       sum_twin(
@@ -468,6 +530,13 @@ std::vector<Twin> make_twins() {
                         "gooch_linear", [](auto r) { return &decltype(r)::gooch_linear; },
                         {signals, signals, signals, unit, unit, unit, unit}, sum),
                     8),
+      isosurface_class_twin,
+      isosurface_crossing_twin,
+      isosurface_regula_falsi_twin,
+      isosurface_bracket_twin,
+      twin(
+          "isosurface_slab", [](auto r) { return &decltype(r)::isosurface_slab; }, {slab}, product),
+      isosurface_normal_twin,
   };
 }
 

@@ -12,6 +12,8 @@ namespace {
 
 using Vec4 = Rules<double>::vec4;
 
+Vec4 with_fourth(const Vector3<double>& vector, double fourth) { return {vector[0], vector[1], vector[2], fourth}; }
+
 /// Something behind what there is.
 void put_behind(const Vec4& next, SurfaceOutcome& outcome) {
   const Vec4 all = Rules<double>{}.over(outcome.rgba(), next);
@@ -27,10 +29,9 @@ Vector3<double> normal_of(const SurfaceScheme& scheme, const SampledHit& hit, co
   if (!scheme.interpolates_normals) return normal_at(hit.normal_t);
   const auto begin = static_cast<double>(samples.positions[hit.interval]);
   const auto end = static_cast<double>(samples.positions[hit.interval + 1]);
-  const Vector3<double> front = normal_at(begin);
-  const Vector3<double> normal = front + (hit.normal_t - begin) / (end - begin) * (normal_at(end) - front);
-  const double norm = normal.matrix().norm();
-  return norm == 0 ? normal : Vector3<double>(normal / norm);
+  const Vec4 normal = Rules<double>{}.isosurface_normal(
+      with_fourth(normal_at(begin), 0), with_fourth(normal_at(end), 0), (hit.normal_t - begin) / (end - begin));
+  return normal.head<3>();
 }
 
 SurfaceMarch::SurfaceMarch(const PiecewiseLinear& transfer, Emission emission, std::vector<Isosurface> isosurfaces)
@@ -72,9 +73,7 @@ SurfaceOutcome SurfaceMarch::operator()(const SurfaceScheme& scheme, const Chain
     const SampledHit& hit = outcome.hits[next++];
     const Isosurface& surface = isosurfaces_[hit.surface];
     const Vector3<double> color = color_of ? color_of(hit) : surface.color;
-    Vec4 slab;
-    slab << surface.opacity * color, surface.opacity;
-    put_behind(slab, outcome);
+    put_behind(Rules<double>{}.isosurface_slab(with_fourth(color, surface.opacity)), outcome);
   };
   for (std::size_t k = 0; k < samples.interval_count(); ++k) {
     const double begin = place(k);

@@ -1,5 +1,7 @@
 #include "raytruth/schemes/surface_method.hpp"
 
+#include "raytruth/rules/rules.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,13 +11,14 @@ namespace {
 
 /// How many of the surfaces a scalar is at or above.
 std::size_t class_of(double s, const std::vector<double>& scalars) {
-  return static_cast<std::size_t>(std::upper_bound(scalars.begin(), scalars.end(), s) - scalars.begin());
+  const auto is_reached = [s](double scalar) { return Rules<double>{}.isosurface_class(s, scalar) == 1; };
+  return static_cast<std::size_t>(std::partition_point(scalars.begin(), scalars.end(), is_reached) - scalars.begin());
 }
 
 /// Where the line between two samples passes a scalar.
 double place_on_line(const Samples<double>& samples, std::size_t interval, double scalar) {
-  const double front = samples.values[interval];
-  const double share = (scalar - front) / (samples.values[interval + 1] - front);
+  const double share =
+      Rules<double>{}.isosurface_crossing(samples.values[interval], samples.values[interval + 1], scalar);
   return static_cast<double>(samples.positions[interval]) + share * samples.length_of(interval);
 }
 
@@ -23,21 +26,14 @@ double place_on_line(const Samples<double>& samples, std::size_t interval, doubl
 template <int Degree>
 double place_on_signal(const Chain<Degree>& signal, const Samples<double>& samples, std::size_t interval,
                        double scalar) {
-  auto low = static_cast<double>(samples.positions[interval]);
-  auto high = static_cast<double>(samples.positions[interval + 1]);
-  double at_low = samples.values[interval] - scalar;
-  double at_high = samples.values[interval + 1] - scalar;
-  double place = low;
-  for (int step = 0; step < regula_falsi_steps && at_low != at_high; ++step) {
-    place = low - at_low * (high - low) / (at_high - at_low);
-    const double here = signal.value(DoubleDouble(place)) - scalar;
-    if ((here < 0) == (at_low < 0)) {
-      low = place;
-      at_low = here;
-    } else {
-      high = place;
-      at_high = here;
-    }
+  Rules<double> rules;
+  Rules<double>::vec4 bracket{static_cast<double>(samples.positions[interval]),
+                              static_cast<double>(samples.positions[interval + 1]), samples.values[interval] - scalar,
+                              samples.values[interval + 1] - scalar};
+  double place = bracket[0];
+  for (int step = 0; step < regula_falsi_steps; ++step) {
+    place = rules.isosurface_regula_falsi(bracket);
+    bracket = rules.isosurface_bracket(bracket, place, signal.value(DoubleDouble(place)) - scalar);
   }
   return place;
 }

@@ -103,10 +103,9 @@ class LitSurfacePixels {
       const Vector3<double> color = color_at(t);
       const double spread = std::max((color_at(t - hit.error) - color).abs().maxCoeff(),
                                      (color_at(t + hit.error) - color).abs().maxCoeff());
-      Rules<double>::vec4 slab;
-      slab << surface.opacity * color, surface.opacity;
+      Rules<double> rules;
       const double transmittance = 1 - light[3];
-      light = Rules<double>{}.over(light, slab);
+      light = rules.over(light, rules.isosurface_slab({color[0], color[1], color[2], surface.opacity}));
       brightest = std::max(brightest, color.maxCoeff());
       radius += transmittance * surface.opacity * spread + rounding * brightest;
       if (t <= first_contact && doubt > 0) doubt = 1 - light[3];
