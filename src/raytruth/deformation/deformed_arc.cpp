@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace raytruth {
 
@@ -275,7 +276,7 @@ Eigen::Vector3d CellCurve::step(const Eigen::Vector3d& from, double r) const {
 
 double CellCurve::reach(const DeformedArc& arc, double relative) const {
   const Eigen::Vector3d first = arc.derivative(0);
-  double result = std::abs(arc.scale);
+  double result = std::numeric_limits<double>::infinity();
   // Both of the last terms, as one alone may happen to be small.
   for (const std::size_t k : {arc_degree - 1, arc_degree}) {
     double size = 0;

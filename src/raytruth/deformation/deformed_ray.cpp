@@ -13,11 +13,12 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 // The last terms of an arc's series, relative to the first: shorter arcs cost time, longer ones radius.
-constexpr double last_terms = 0x1p-38;
+constexpr double last_terms = 0x1p-34;
 // The longest arc in the size of a lattice's cell, and the shortest one, from which on the curve is given up.
 constexpr double longest_arc = 0.5;
 constexpr double shortest_arc = 0x1p-20;
 constexpr std::size_t most_arcs = 1U << 20U;
+constexpr double spare = 0.9;  // of what an arc could have been, for the next one
 // How near, in the size of a cell, the place of an arc's end must be to an exit to be that exit.
 constexpr double at_exit = 1e-5;
 constexpr double rounding_of_sums = 0x1p-47;  // of the magnitudes of what is added and multiplied
@@ -160,8 +161,7 @@ class DeformedVolume::Tracer {
         place_.cell[axis] += leaving.is_upwards ? 1 : -1;
         place_.local[static_cast<Eigen::Index>(axis)] -= leaving.is_upwards ? 1 : -1;
       }
-      const bool lasts = !leaving.axis;
-      guess = std::min(longest_arc, lasts ? 1.25 * half_length_ : std::max(half_length_, guess));
+      guess = next_half_length_;
     }
   }
 
@@ -182,7 +182,8 @@ class DeformedVolume::Tracer {
       signal_.evaluations += arc_degree + 1;
       const double reach = curve.reach(arc, last_terms);
       if (arc.is_certified && reach >= r * slightly_longer) {
-        half_length_ = guess;
+        // The next one will be as long as this one could have been, with something to spare.
+        next_half_length_ = std::min(longest_arc, spare * guess * reach / (r * slightly_longer));
         return arc;
       }
       const double shorter = arc.is_certified ? std::min(0.9, reach / (r * slightly_longer)) : 0.5;
@@ -442,7 +443,7 @@ class DeformedVolume::Tracer {
   double sigma_by_r_;
   LatticePlace place_;
   Eigen::Vector3d across_ = Eigen::Vector3d::Zero();
-  double half_length_ = longest_arc;
+  double next_half_length_ = longest_arc;
   bool is_before_origin_ = false;
   DoubleDouble end_;
   std::vector<double> breaks_;
