@@ -3,6 +3,7 @@
 #include "raytruth/core/random.hpp"
 #include "raytruth/reference/ray_integral.hpp"
 #include "raytruth/tables/cell_table.hpp"
+#include "raytruth/tables/partial_pre_integration.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -23,6 +24,8 @@ namespace {
 using Vec4 = Rules<double>::vec4;
 
 constexpr std::array<std::string_view, 4> mesh_names{"cross", "spire", "grid", "sheared"};
+/// Slabs of projected_table that are not exact.
+constexpr std::array<std::string_view, 2> more_slabs{"projected_table_64", "projected_partial"};
 constexpr std::int64_t grid_side = 5;
 constexpr std::size_t table_size = 64;
 constexpr std::size_t table_distances = 17;
@@ -100,6 +103,14 @@ Vec4 slab_light(RayIntegral& integrate, double front, double back, double length
   return {slab.color[0], slab.color[1], slab.color[2], slab.opacity};
 }
 
+/// Moreland's and Angel's: extinction and colour linear from one end's to the other's.
+Vec4 partial_slab(const PiecewiseLinear& transfer, double front, double back, double length) {
+  const Optics first = transfer.at(front);
+  const Optics second = transfer.at(back);
+  return partially_pre_integrated_slab(
+      first, second, length, partial_pre_integration_psi(first.extinction * length, second.extinction * length));
+}
+
 struct Truth {
   std::vector<Vec4> light;
   std::vector<std::uint8_t> is_met;
@@ -140,19 +151,23 @@ std::vector<Record> records(const Experiment& experiment, const Options& options
         const PiecewiseLinear transfer = ramp(extinction);
         const Truth truth = truth_of(field, view, transfer);
         const double longest = name == "cross" || name == "spire" ? 2 : 1;
-        const CellTable table = exact_cell_table(
-            transfer, {.size = table_size, .low = 0, .high = 1, .length = 1}, Emission::associated,
-            CellTableAxis::mean_depth, cell_table_distances(CellTableAxis::mean_depth, table_distances, longest));
-        for (std::size_t rule = 0; rule <= projection_rule_names.size(); ++rule)
+        const CellTable table = cell_table(transfer, {.size = table_size, .low = 0, .high = 1, .length = 1},
+                                           Emission::associated, CellTableAxis::mean_depth,
+                                           cell_table_distances(CellTableAxis::mean_depth, table_distances, longest));
+        for (std::size_t rule = 0; rule < projection_rule_names.size() + more_slabs.size(); ++rule)
           for (const CellOrder order : {CellOrder::exact, CellOrder::centre}) {
             if (order == CellOrder::centre && (name == "cross" || name == "spire")) continue;
-            const bool is_looked_up = rule == projection_rule_names.size();
+            const bool has_own_slabs = rule >= projection_rule_names.size();
+            const std::string_view name_of_rule =
+                has_own_slabs ? more_slabs[rule - projection_rule_names.size()] : projection_rule_names[rule];
             RayIntegral integrate(transfer, Emission::associated);
             const CellSlab slab = [&](double front, double back, double length) -> Vec4 {
-              return is_looked_up ? look_up(table, front, back, length) : slab_light(integrate, front, back, length);
+              if (name_of_rule == "projected_table_64") return look_up(table, front, back, length);
+              if (name_of_rule == "projected_partial") return partial_slab(transfer, front, back, length);
+              return slab_light(integrate, front, back, length);
             };
             Record record{.mesh = name, .is_perspective = is_perspective, .extinction = extinction};
-            record.rule = is_looked_up ? "projected_table_64" : std::string(projection_rule_names[rule]);
+            record.rule = name_of_rule;
             record.order = cell_order_names[static_cast<std::size_t>(order)];
             record.radius = truth.radius;
             record.length_max = truth.length_error;
@@ -195,7 +210,8 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
       {.name = "rule",
        .description =
            "what is linear in the triangles of a cell; projected_table makes exact slabs, projected_table_64 "
-           "looks them up among 64^2 scalars, without an axis for opacity",
+           "looks them up among 64^2 scalars, without an axis for opacity, projected_partial has extinction and colour "
+           "linear from one end of a slab to the other (Moreland and Angel)",
        .is_key = true,
        .cell = &Record::rule},
       {.name = "order",

@@ -52,6 +52,7 @@ struct Record {
   std::string_view part;
   TableKeys keys;
   std::string_view axis = {};
+  std::string_view entries = {};
   std::int64_t distances = 0;
   double opacity_max = 0;
   double color_max = 0;
@@ -123,26 +124,31 @@ void add_look_ups(const Experiment& experiment, const Options& options, std::vec
       const auto places = places_of(experiment, options, transfer, radius);
       for (const std::size_t size : options.study.sizes)
         for (std::size_t a = 0; a < cell_table_axis_names.size(); ++a)
-          for (const std::int64_t count : options.distances) {
-            const auto axis = static_cast<CellTableAxis>(a);
-            if (axis != CellTableAxis::uniform && count > most_nodes) continue;
-            if (axis == CellTableAxis::printed && count != options.distances.front()) continue;
-            const auto distances = cell_table_distances(axis, static_cast<std::size_t>(count), longest);
-            const CellTable table =
-                exact_cell_table(transfer, TableStudy::axes(size), Emission::associated, axis, distances);
-            Record record{.part = "look_up", .keys = {shape, depth, size}, .axis = cell_table_axis_names[a]};
-            record.distances = std::ssize(distances);
-            record.numbers = table.numbers();
-            record.radius = radius;
-            record.distance_max = distance_error(table, transfer, places, record.radius);
-            for (const Place& place : places) {
-              const Vec4 error = (look_up(table, place.front, place.back, place.length) - place.truth).abs();
-              record.opacity_max = std::max(record.opacity_max, error[3]);
-              record.color_max = std::max(record.color_max, error.head<3>().maxCoeff());
-              record.mean += error.mean() / static_cast<double>(places.size());
+          for (const std::int64_t count : options.distances)
+            for (std::size_t e = 0; e < cell_table_entries_names.size(); ++e) {
+              const auto axis = static_cast<CellTableAxis>(a);
+              const auto entries = static_cast<CellTableEntries>(e);
+              if (axis != CellTableAxis::uniform && (count > most_nodes || entries != CellTableEntries::exact))
+                continue;
+              if (axis == CellTableAxis::printed && count != options.distances.front()) continue;
+              if (axis == CellTableAxis::slope && count < 3) continue;
+              const auto distances = cell_table_distances(axis, static_cast<std::size_t>(count), longest);
+              const CellTable table =
+                  cell_table(transfer, TableStudy::axes(size), Emission::associated, axis, distances, entries);
+              Record record{.part = "look_up", .keys = {shape, depth, size}, .axis = cell_table_axis_names[a]};
+              record.entries = cell_table_entries_names[e];
+              record.distances = std::ssize(distances);
+              record.numbers = table.numbers();
+              record.radius = radius;
+              record.distance_max = distance_error(table, transfer, places, record.radius);
+              for (const Place& place : places) {
+                const Vec4 error = (look_up(table, place.front, place.back, place.length) - place.truth).abs();
+                record.opacity_max = std::max(record.opacity_max, error[3]);
+                record.color_max = std::max(record.color_max, error.head<3>().maxCoeff());
+                record.mean += error.mean() / static_cast<double>(places.size());
+              }
+              records.push_back(record);
             }
-            records.push_back(record);
-          }
     }
 }
 
@@ -176,9 +182,8 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
   };
   return {
       {.name = "part",
-       .description =
-           "look_up: in a table with exact entries; cost: what a table takes, counted, with as many distances as "
-           "scalars; cost_of_distances: the same beside half the distances",
+       .description = "look_up: in a table; cost: what a table takes, counted, with as many distances as "
+                      "scalars; cost_of_distances: the same beside half the distances",
        .is_key = true,
        .cell = &Record::part},
       {.name = "shape",
@@ -202,9 +207,16 @@ Columns<Record> columns(const Experiment& /*experiment*/, const Options& /*optio
            "uniform: 0 to sqrt(3) in equal steps; powers_of_two: 0, then each twice the one before up to "
            "sqrt(3); both linear in D. powers_of_two_log: linear in log D behind the first. printed: 0, then "
            "2^-7 to 2, linear. mean_depth: as uniform, but "
-           "opacity without distances, and colour over opacity linear in D",
+           "opacity without distances, and colour over opacity linear in D. slope: the same opacity; colour over "
+           "opacity by D / |back - front|, linear in its logarithm",
        .is_key = true,
        .cell = of_look_up([](const Record& record) { return record.axis; })},
+      {.name = "entries",
+       .description =
+           "exact; brute_force and subrange: of mean intervals; incremental: step by step from nearest entries, as "
+           "VTK makes them by default",
+       .is_key = true,
+       .cell = of_look_up([](const Record& record) { return record.entries; })},
       {.name = "distances",
        .description = "entries along that axis, 0 among them",
        .is_key = true,

@@ -34,7 +34,7 @@ TEST(CellTable, EntriesAndOpacitiesWithoutAnAxisAreExact) {
   const TableAxes axes{.size = 9, .low = 0, .high = 1, .length = 1};
   for (const auto axis : {CellTableAxis::uniform, CellTableAxis::powers_of_two_log, CellTableAxis::mean_depth}) {
     const auto distances = cell_table_distances(axis, 5, 2);
-    const CellTable table = exact_cell_table(transfer, axes, Emission::associated, axis, distances);
+    const CellTable table = cell_table(transfer, axes, Emission::associated, axis, distances);
     for (const double front : {0.125, 0.25, 0.75})
       for (const double back : {0.125, 0.625, 1.0})
         for (const double length : {0.25, 0.5, 1.0, 2.0, 1.5}) {
@@ -51,6 +51,85 @@ TEST(CellTable, EntriesAndOpacitiesWithoutAnAxisAreExact) {
           EXPECT_LT((found.head<3>() - truth.color).abs().maxCoeff(), 1e-13);
         }
   }
+}
+
+/// The largest difference of a table's slabs from exact ones, at scalars that are entries.
+double largest_error(const CellTable& table, const PiecewiseLinear& transfer, const std::vector<double>& lengths) {
+  RayIntegral integrate(transfer, Emission::associated);
+  double largest = 0;
+  for (const double front : {0.125, 0.25, 0.75})
+    for (const double back : {0.375, 0.625, 1.0})
+      for (const double length : lengths) {
+        Chain<3> chain;
+        const double step = (back - front) / 3;
+        chain.pieces = {{0.0, length, {{front, front + step, back - step, back}}}};
+        chain.end = length;
+        const Certified truth = integrate(chain);
+        const auto found = look_up(table, front, back, length);
+        largest =
+            std::max({largest, std::abs(found[3] - truth.opacity), (found.head<3>() - truth.color).abs().maxCoeff()});
+      }
+  return largest;
+}
+
+TEST(CellTable, AppendedSlabsOfOneSlopeAreExactAtTheirDistances) {
+  const PiecewiseLinear transfer = jumping_transfer();
+  const TableAxes axes{.size = 9, .low = 0, .high = 1, .length = 1};
+  const auto distances = cell_table_distances(CellTableAxis::slope, 33, 2);
+  const CellTable table = cell_table(transfer, axes, Emission::associated, CellTableAxis::slope, distances);
+  RayIntegral integrate(transfer, Emission::associated);
+  for (const std::size_t k : {std::size_t{5}, std::size_t{15}, std::size_t{20}}) {
+    const double length = distances[k] * 0.5;  // from 0.125 to 0.625
+    Chain<3> chain;
+    chain.pieces = {{0.0, length, {{0.125, 0.125 + 0.5 / 3, 0.625 - 0.5 / 3, 0.625}}}};
+    chain.end = length;
+    const Certified truth = integrate(chain);
+    const auto found = look_up(table, 0.125, 0.625, length);
+    EXPECT_NEAR(found[3], truth.opacity, 1e-13);
+    EXPECT_LT((found.head<3>() - truth.color).abs().maxCoeff(), 1e-12);
+  }
+  // In between, colour over opacity is a line; more distances bring it nearer, twice as many four times.
+  const std::vector<double> lengths{0.3, 0.7, 1.1};
+  const auto error = [&](std::size_t count) {
+    return largest_error(cell_table(transfer, axes, Emission::associated, CellTableAxis::slope,
+                                    cell_table_distances(CellTableAxis::slope, count, 2)),
+                         transfer, lengths);
+  };
+  EXPECT_LT(error(129), error(33) / 4);
+  EXPECT_LT(error(33), 0.01);
+  // A slab of one scalar is homogeneous.
+  const auto flat = look_up(table, 0.25, 0.25, 1);
+  EXPECT_NEAR(flat[3], -std::expm1(-2.0), 1e-12);
+  EXPECT_NEAR(flat[0], -0.5 * std::expm1(-2.0), 1e-5);
+}
+
+TEST(CellTable, EntriesOfOtherRules) {
+  const PiecewiseLinear transfer = jumping_transfer();
+  const TableAxes axes{.size = 65, .low = 0, .high = 1, .length = 1};
+  const auto distances = cell_table_distances(CellTableAxis::uniform, 8, 2);
+  const auto made = [&](CellTableEntries entries) {
+    return cell_table(transfer, axes, Emission::associated, CellTableAxis::uniform, distances, entries);
+  };
+  const CellTable brute_force = made(CellTableEntries::brute_force);
+  const CellTable subrange = made(CellTableEntries::subrange);
+  for (std::size_t k = 0; k < distances.size(); ++k)
+    for (std::size_t i = 0; i < brute_force.slices[k].values.size(); ++i)
+      EXPECT_NEAR(brute_force.slices[k].values[i], subrange.slices[k].values[i], 1e-13);
+  const std::vector<double> nodes{distances[1], distances[4], distances[7]};
+  EXPECT_LT(largest_error(brute_force, transfer, nodes), 0.01);
+  // Step by step from nearest entries errors add up; from two steps on nothing is exact.
+  const CellTable incremental = made(CellTableEntries::incremental);
+  EXPECT_LT(largest_error(incremental, transfer, {distances[1]}), 1e-13);
+  EXPECT_GT(largest_error(incremental, transfer, {2.0}), 1e-4);
+  EXPECT_LT(largest_error(incremental, transfer, nodes), 0.05);
+  // Where the scalar does not matter, steps are exact.
+  const PiecewiseLinear constant({{.s = 0, .optics = {2, {1, 0.5, 0.25}}}, {.s = 1, .optics = {2, {1, 0.5, 0.25}}}});
+  const CellTable steps = cell_table(constant, axes, Emission::associated, CellTableAxis::uniform, distances,
+                                     CellTableEntries::incremental);
+  EXPECT_LT(largest_error(steps, constant, nodes), 1e-13);
+  EXPECT_THROW(cell_table(transfer, axes, Emission::associated, CellTableAxis::mean_depth, distances,
+                          CellTableEntries::incremental),
+               InputError);
 }
 
 /// A cell whose vertices stand in any order.
