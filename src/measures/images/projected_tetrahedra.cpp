@@ -1,8 +1,8 @@
 #include "raytruth/cells/projected_tetrahedra.hpp"
 #include "experiments/measure.hpp"
+#include "raytruth/cells/cell_table.hpp"
 #include "raytruth/core/random.hpp"
 #include "raytruth/reference/ray_integral.hpp"
-#include "raytruth/tables/cell_table.hpp"
 #include "raytruth/tables/partial_pre_integration.hpp"
 
 #include <tbb/enumerable_thread_specific.h>

@@ -2,7 +2,7 @@
 #include "raytruth/core/named.hpp"
 #include "raytruth/schemes/surface_march.hpp"
 #include "raytruth/shading/slab_shading.hpp"
-#include "raytruth/tables/isoslab_table.hpp"
+#include "raytruth/tables/lit/isoslab_table.hpp"
 
 #include <boost/math/constants/constants.hpp>
 

@@ -1,8 +1,8 @@
 #include "experiments/measure.hpp"
 #include "measures/tables/table_study.hpp"
+#include "raytruth/cells/cell_table.hpp"
 #include "raytruth/core/random.hpp"
 #include "raytruth/reference/ray_integral.hpp"
-#include "raytruth/tables/cell_table.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>

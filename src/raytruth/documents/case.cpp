@@ -17,7 +17,7 @@
 #include "raytruth/signals/marschner_lobb.hpp"
 #include "raytruth/signals/ray_field.hpp"
 #include "raytruth/skipping/clear_scalars.hpp"
-#include "raytruth/tables/isoslab_table.hpp"
+#include "raytruth/tables/lit/isoslab_table.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

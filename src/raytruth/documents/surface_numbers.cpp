@@ -2,7 +2,7 @@
 
 #include "raytruth/core/named.hpp"
 #include "raytruth/schemes/surface_method.hpp"
-#include "raytruth/tables/moment_table.hpp"
+#include "raytruth/tables/lit/moment_table.hpp"
 
 #include <algorithm>
 #include <cstddef>

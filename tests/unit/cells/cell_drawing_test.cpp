@@ -1,6 +1,6 @@
+#include "raytruth/cells/cell_table.hpp"
 #include "raytruth/cells/projected_tetrahedra.hpp"
 #include "raytruth/reference/ray_integral.hpp"
-#include "raytruth/tables/cell_table.hpp"
 
 #include <gtest/gtest.h>
 

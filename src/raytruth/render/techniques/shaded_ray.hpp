@@ -11,7 +11,7 @@
 #include "raytruth/shading/lit_integral.hpp"
 #include "raytruth/signals/point_gradient.hpp"
 #include "raytruth/skipping/clear_scalars.hpp"
-#include "raytruth/tables/moment_table.hpp"
+#include "raytruth/tables/lit/moment_table.hpp"
 
 #include <array>
 #include <cstddef>

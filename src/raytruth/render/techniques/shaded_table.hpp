@@ -2,7 +2,7 @@
 
 #include "raytruth/render/scene.hpp"
 #include "raytruth/shading/point_light.hpp"
-#include "raytruth/tables/moment_table.hpp"
+#include "raytruth/tables/lit/moment_table.hpp"
 
 #include <Eigen/Core>
 

@@ -9,7 +9,7 @@
 #include "raytruth/schemes/surface_march.hpp"
 #include "raytruth/shading/point_light.hpp"
 #include "raytruth/skipping/clear_scalars.hpp"
-#include "raytruth/tables/isoslab_table.hpp"
+#include "raytruth/tables/lit/isoslab_table.hpp"
 
 #include <fmt/format.h>
 

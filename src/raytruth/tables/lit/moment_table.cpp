@@ -1,4 +1,4 @@
-#include "raytruth/tables/moment_table.hpp"
+#include "raytruth/tables/lit/moment_table.hpp"
 
 #include "raytruth/core/error.hpp"
 #include "raytruth/tables/look_up.hpp"

@@ -2,7 +2,7 @@
 
 #include "raytruth/schemes/outcome.hpp"
 #include "raytruth/schemes/samples.hpp"
-#include "raytruth/tables/moment_table.hpp"
+#include "raytruth/tables/lit/moment_table.hpp"
 #include "raytruth/transfer/isoslab.hpp"
 
 #include <Eigen/Core>

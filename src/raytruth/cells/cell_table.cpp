@@ -1,4 +1,4 @@
-#include "raytruth/tables/cell_table.hpp"
+#include "raytruth/cells/cell_table.hpp"
 
 #include "raytruth/core/error.hpp"
 #include "raytruth/tables/brute_force.hpp"

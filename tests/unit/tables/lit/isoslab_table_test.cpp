@@ -1,4 +1,4 @@
-#include "raytruth/tables/isoslab_table.hpp"
+#include "raytruth/tables/lit/isoslab_table.hpp"
 #include "raytruth/core/error.hpp"
 #include "raytruth/signals/piecewise_polynomial.hpp"
 

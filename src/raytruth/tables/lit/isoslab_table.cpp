@@ -1,4 +1,4 @@
-#include "raytruth/tables/isoslab_table.hpp"
+#include "raytruth/tables/lit/isoslab_table.hpp"
 
 #include "raytruth/rules/rules.hpp"
 #include "raytruth/transfer/emission.hpp"
